@@ -1,5 +1,5 @@
-/* test_metrics.c - eval/metrics.h: cases that can be worked out by hand, and slow implementations
- * straight from the definitions.
+/* test_metrics.c - eval/metrics.h: cases that can be computed by hand, and slow reference
+ * implementations written from the definitions.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <stdlib.h>
@@ -58,8 +58,7 @@ static void test_psnr(void **state)
     free(b);
 }
 
-/* Between two constants covariances vanish away from the border, and what is left is the luminance
- * term. */
+/* Two constant pictures have no covariance away from the border, so the luminance term remains. */
 static void test_constants(void **state)
 {
     const double x = 100.0 / 255.0, y = 160.0 / 255.0;
@@ -70,8 +69,8 @@ static void test_constants(void **state)
     assert_int_equal(ted4_metrics_compare(a, b, 200, 190, NULL, &m), 0);
     assert_true(fabs(m.ssim2 - (2.0 * x * y + 4e-4) / (x * x + y * y + 4e-4)) < 1e-12);
     assert_int_equal(m.scales, 5);
-    /* 200 x 190 halves to 100 x 95 -> 50 x 48: the odd 95 brings in a row of half values, so only
-     * the first scales are flat. */
+    /* 200 x 190 is halved to 100 x 95 and then 50 x 48: the odd height 95 adds a row of half
+     * values, so only the first scales are constant. */
     assert_true(m.ms_ssim < 1.0);
     assert_true(m.ms_ssim > 0.5);
     free(a);
@@ -86,13 +85,13 @@ static void test_constants(void **state)
     free(b);
 }
 
-/* ---- definitions, without separation or reuse ---- */
+/* ---- definitions, computed without separation or reuse ---- */
 
 typedef struct {
     double ssim, contrast;
 } similarity;
 
-/* Window of 2 half + 1 pixels; sigma 0: uniform. Pixels outside count as zero. */
+/* A window of 2 half + 1 pixels; sigma 0: uniform. Pixels outside the picture count as zero. */
 static similarity window_at(const double *a, const double *b, int w, int h, int x, int y, int half,
                             double sigma, double range)
 {
@@ -152,7 +151,7 @@ static double *plane_of(const uint8_t *v, int n, int channel)
     return out;
 }
 
-/* A copy with a zero row or column before the first where a side is odd, then means of 2 x 2. */
+/* Adds a zero row or column before the first if a side is odd, then takes means of 2 x 2. */
 static double *halved(double *v, int w, int h)
 {
     const int ow = (w + 1) / 2, oh = (h + 1) / 2;

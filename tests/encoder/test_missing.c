@@ -1,5 +1,5 @@
-/* test_missing.c - entries of a list whose picture is not there are left out, counted, and said
- * once; a picture that is there and broken is an error all the same. Of every layout that lists
+/* test_missing.c - list entries whose picture is missing are left out, counted, and reported in one
+ * warning; a picture that exists but is damaged is still an error. Covers every layout that lists
  * pictures.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "test.h"
@@ -11,8 +11,8 @@ static void gone(const tiny_folder *f, const char *name)
     must(remove(tiny_path(f, name)) == 0, name);
 }
 
-/* 20 frames at as many times; camera_angle_x, and D-NeRF's names without extension where there are
- * two files. */
+/* Writes 20 frames at different times, with camera_angle_x, and with D-NeRF's names without
+ * extension if there are two files. */
 static void write_transforms(const tiny_folder *f, const char *file, const char *part, int first,
                              int n, const char *more)
 {
@@ -48,7 +48,7 @@ static void test_transforms(void **state)
     assert_int_equal(warned(&f, "3 of 20 entries have no picture; the first: ",
                             "transforms_train.json: frames[3]: ./train/r_03"),
                      17);
-    /* What is left keeps its own time and pose. */
+    /* The remaining entries keep their time and pose. */
     assert_string_equal(tiny_load(&d, &f, &tiny_options), "");
     assert_string_equal(d.layout, "D-NeRF");
     for (size_t i = 0; i < d.n_pictures; i++) {
@@ -58,7 +58,7 @@ static void test_transforms(void **state)
         assert_int_equal(d.pictures[i].is_test, number >= 16);
     }
     ted4_dataset_free(&d);
-    /* There and broken. */
+    /* The file exists but is damaged. */
     tiny_text(&f, "train/r_05.png", "GIF89a.......");
     refuse(&f, "transforms_train.json: frames[5]", "neither PNG nor JPEG");
     for (int i = 0; i < 16; i++) {
@@ -71,7 +71,7 @@ static void test_transforms(void **state)
     tiny_free(&f);
 }
 
-/* Lists of names still mean what they mean when some of the frames before have no picture. */
+/* Lists of names still select the right frames if some of the preceding frames have no picture. */
 static void test_lists(void **state)
 {
     tiny_folder f = tiny_new();
@@ -114,8 +114,8 @@ static void test_colmap(void **state)
         warned(&f, "17 of 50 entries have no picture; the first: COLMAP image \"p01.png\": ",
                "images/p01.png"),
         33);
-    /* Held out is every eighth of those that are there; numbers are times, and a gap is a gap no
-     * more than in other names. */
+    /* Every eighth of the existing pictures is held out. The numbers in names give the order of
+     * frames; gaps between them are closed, as with other names. */
     assert_string_equal(tiny_load(&d, &f, &tiny_options), "");
     assert_int_equal(d.n_frames, 33);
     assert_int_equal(d.pictures[32].is_test, 1);
@@ -149,7 +149,7 @@ static void test_hypernerf(void **state)
     tiny_free(&f);
 }
 
-/* A camera of which no clip is there: the others keep their poses. */
+/* One camera has no clip: the others keep their poses. */
 static void test_calibration(void **state)
 {
     tiny_folder f = tiny_new();

@@ -1,6 +1,6 @@
 /* test_model_search.c - train/search/model_search.c, prior_bits.c and rd_prune.c in a whole
- * training: what they decide lowers the cost, within their budget, the same for any number of
- * threads and for a run that was interrupted; switched off they leave no trace.
+ * training: their decisions lower the cost, stay within their budget, and are the same for any
+ * number of threads and for an interrupted run; switched off, they have no effect.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "test.h"
 #include "ball_trainer.h"
@@ -19,7 +19,7 @@ enum { STAGE1 = 400, STAGE2 = 1400, TOTAL = STAGE1 + STAGE2, FRAMES = 5 };
 
 static tiny_folder folder;
 static ted4_dataset scene;
-static ted4_snapshot stage1; /* its end */
+static ted4_snapshot stage1; /* at its end */
 
 static ted4_train_options options(const char *capacity)
 {
@@ -32,9 +32,9 @@ static ted4_train_options options(const char *capacity)
     return o;
 }
 
-/* Bits weigh so much that coarse weights, and a model without motion, cost far less than what
- * pictures miss of them, whatever was trained: motion goes as soon as a bit weighs a quarter of
- * this. */
+/* The weight of a bit is so high that, whatever was trained, coarse weights and a model without
+ * motion save far more than they cost in quality: motion is dropped even at a quarter of this
+ * weight. */
 static ted4_train_options dear_options(void)
 {
     ted4_train_options o = options("capacity=1");
@@ -66,7 +66,7 @@ static int tear_down(void **state)
     return 0;
 }
 
-/* At the end of stage 1. */
+/* Begins at the end of stage 1. */
 static void begin(ted4_trainer *t, const ted4_train_options *o, const ted4_parallel *p)
 {
     ball_begin(t, o, &scene, p);
@@ -90,9 +90,9 @@ static int is_of_bits(const struct ted4_trial *x)
     return x->candidate >= TED4_CANDIDATE_HEAD_BITS && x->candidate <= TED4_CANDIDATE_PRIOR_BITS;
 }
 
-/* Each trial that was taken lowers the cost, each one that was left does not. The first moves from
- * full bits of the heads' weights save hundreds of bytes and no picture shows them, so that some
- * trial is taken at any rate. Gives how many were trained. */
+/* Asserts that each accepted trial lowers the cost and each rejected one does not. The first
+ * reductions of the bits of the heads' weights save hundreds of bytes without a visible change, so
+ * at least one trial is accepted. Returns the number of trials that were trained. */
 static int check_trials(const ted4_trainer *t)
 {
     int taken = 0, trained = 0;
@@ -128,7 +128,7 @@ static void test_decides(void **state)
     assert_int_equal(t.search.n_trials, 0);
     weights = t.layout.shape.n_netr + t.layout.shape.n_nete;
 
-    /* What a bit weighs is what it weighed before. */
+    /* The weight of a bit must stay fixed. */
     const double charge = ted4_lambda_per_bit(&t);
 
     assert_int_equal(ted4_trainer_step(&t), 0);
@@ -146,8 +146,8 @@ static void test_decides(void **state)
     ted4_trainer_finish(&t);
 }
 
-/* Refines from so many bits of the prior; each look is noted, and the best stays. Gives whether any
- * was. */
+/* Refines from the given number of bits of the prior. Asserts that each evaluation is recorded and
+ * that the best number is kept. Returns whether it is higher than before. */
 static int refined(ted4_trainer *t, int bits)
 {
     const size_t first = t->search.n_trials;
@@ -176,8 +176,8 @@ static int refined(ted4_trainer *t, int bits)
     return bits > t->search.trial[first].from;
 }
 
-/* Bits of the prior that are too few when the integer stage begins are given back. How many are is
- * up to what was trained: one bit is too few for any, and so are most of the numbers tried. */
+/* Bits of the prior that are missing when the integer stage begins are given back. Their number
+ * depends on the training: one bit is never enough, and most of the numbers tried here are not. */
 static void test_refined(void **state)
 {
     const ted4_train_options o = options("capacity=1");
@@ -196,7 +196,7 @@ static void test_refined(void **state)
     ted4_trainer_finish(&t);
 }
 
-/* A budget that pays for few trials is not spent on the dearest. */
+/* A budget for only a few trials is not spent on the most expensive ones. */
 static void test_cheap_first(void **state)
 {
     ted4_train_options o = options("capacity=1");
@@ -216,10 +216,10 @@ static void test_cheap_first(void **state)
     ted4_trainer_finish(&t);
 }
 
-/* A model of few moves, of which features come last but one. What a feature less saves and what
- * pictures miss of it without training are up to training; but trials are trained wherever a bit's
- * weight is between a fifth of their ratio and all of it (HOPE in model_search.c), and each of
- * these rates is half as much again as the one before. */
+/* A model with few candidates, of which the feature comes last but one. How much a smaller feature
+ * saves, and how much quality it costs without training, depends on the training; but a trial is
+ * trained if the weight of a bit is between a fifth of the ratio of the two and the ratio itself
+ * (HOPE in model_search.c), and these rates grow in steps of about 1.5. */
 static void test_trained(void **state)
 {
     static const char *const few[] = { "motion=0",  "activation=0", "view=0",
@@ -251,7 +251,7 @@ static void test_trained(void **state)
     assert_true(trained > 0);
 }
 
-/* Steps that trials took, looks among them, as model_search.h counts them. */
+/* Counts the steps that trials took, including evaluations, as model_search.h does. */
 static void test_budget(void **state)
 {
     const ted4_train_options o = options("capacity=1");
@@ -277,7 +277,7 @@ static void test_budget(void **state)
     ted4_trainer_finish(&t);
 }
 
-/* Weights are coarse, and in the integer stage those of the file. */
+/* Asserts that weights are on coarse grids and, in the integer stage, equal those of the file. */
 static void check_coarse(const ted4_train_options *o, int coarse[TED4_WEIGHT_GRIDS])
 {
     ted4_trainer t;
@@ -308,8 +308,8 @@ static void check_coarse(const ted4_train_options *o, int coarse[TED4_WEIGHT_GRI
     ted4_trainer_finish(&t);
 }
 
-/* At a low rate the heads' weights are coarse for sure; at a high one, where trials get as far, the
- * prior's are, too. */
+/* At a low rate, the heads' weights are always coarse; at a high rate, so are those of the prior,
+ * if trials get as far. */
 static void test_coarse(void **state)
 {
     const ted4_train_options cheap = options("capacity=1"), dear = dear_options();
@@ -340,7 +340,7 @@ static void test_threads(void **state)
     free(one.bytes);
 }
 
-/* From states before, between and after the decisions. */
+/* Resumes from states before, between and after the decisions. */
 static void test_resumed(void **state)
 {
     const ted4_train_options o = options("capacity=1");
@@ -382,7 +382,7 @@ static void test_resumed(void **state)
     free(one.bytes);
 }
 
-/* A decided state belongs to no fixed run, nor to another lambda's. */
+/* A state with decisions is refused by a run of fixed capacity and by one with another lambda. */
 static void test_not_mixed(void **state)
 {
     const ted4_train_options o = options("capacity=1");
@@ -404,7 +404,7 @@ static void test_not_mixed(void **state)
     ted4_snapshot_free(&kept);
 }
 
-/* Fixed: nothing is tried, and what trials may take does not matter. */
+/* With fixed capacity nothing is tried, and the budget of trials has no effect. */
 static void test_fixed(void **state)
 {
     ted4_train_options o = options("capacity=0"), plain = options("capacity=0");
@@ -428,7 +428,7 @@ static void test_fixed(void **state)
     free(b.bytes);
 }
 
-/* Too few steps tell nothing. */
+/* With too few steps, nothing is tried. */
 static void test_short(void **state)
 {
     ted4_train_options o = options("capacity=1");
@@ -445,14 +445,14 @@ static void test_short(void **state)
     ted4_trainer_finish(&t);
 }
 
-/* A higher price of bits leaves no more model, and a smaller file. */
+/* A higher weight of bits gives a much smaller file. */
 static void test_lambda(void **state)
 {
     const ted4_train_options cheap = options("capacity=1"), dear = dear_options();
     ball_file low = whole(&cheap, NULL), high = whole(&dear, NULL);
 
     (void)state;
-    assert_true(high.size < low.size * 3 / 4); /* half of that is usual */
+    assert_true(high.size < low.size * 3 / 4); /* usually half of it */
     free(low.bytes);
     free(high.bytes);
 }

@@ -1,7 +1,7 @@
-/* test_monitor.c - train/monitor/monitor.c and train/monitor/grad_norm.c: what goes wrong is found
- * when it happens and named, training goes on from the last good state with smaller steps, three
- * times; a training that goes well never notices. Files and logs of a program that went back:
- * test_run_log.c.
+/* test_monitor.c - train/monitor/monitor.c and train/monitor/grad_norm.c: anomalies are detected
+ * when they occur and named; training goes back to the last good state and continues with smaller
+ * steps, up to three times; healthy trainings are not affected. Files and logs of a program that
+ * went back: test_run_log.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "test.h"
 #include "ball_trainer.h"
@@ -13,7 +13,7 @@
 #include "train/step/schedule.h"
 #include "train/train.h"
 
-/* States are kept at the beginning, at 250 and at the end of stage 1. */
+/* States are kept at the start, at step 250 and at the end of stage 1. */
 enum { STAGE1 = 400, INTEGER_FROM = 600, KEPT = 250, FRAMES = 5 };
 
 static tiny_folder folder, still_folder;
@@ -45,7 +45,7 @@ static void begin_at(ted4_trainer *t, uint64_t iteration)
     ball_train(t, iteration);
 }
 
-/* ---- the usual size ---- */
+/* ---- the usual magnitude ---- */
 
 static void test_scale(void **state)
 {
@@ -70,9 +70,9 @@ static void test_scale(void **state)
     assert_true(ted4_scale_usual(&s) < 2.2);
 }
 
-/* ---- a training that goes well ---- */
+/* ---- healthy trainings ---- */
 
-/* However often states are kept, the file is the same. */
+/* The file does not depend on how often states are kept. */
 static void test_healthy(void **state)
 {
     ted4_trainer t;
@@ -101,9 +101,9 @@ static void test_healthy(void **state)
     free(kept.bytes);
 }
 
-/* ---- what is found ---- */
+/* ---- what is detected ---- */
 
-/* The next step goes back to a state, because of that. */
+/* Asserts that the next step goes back to the state at step to, for this cause. */
 static void expect_back(ted4_trainer *t, uint64_t to, const char *cause, const char *term,
                         int64_t anchor)
 {
@@ -164,7 +164,7 @@ static void test_values(void **state)
     finish(&t);
 }
 
-/* Changes a gradient after a step, and has the monitor look at it again. */
+/* Changes a gradient after a step, and lets the monitor check it again. */
 static int look_again(ted4_trainer *t, size_t visible, int channel, size_t lane, float gradient)
 {
     float rate[256] = { 0 };
@@ -215,7 +215,7 @@ static void test_gradients(void **state)
     }
 }
 
-/* The gradient of the bank's smoothness follows its values. */
+/* The gradient of the bank's smoothness term follows the bank's values. */
 static void test_networks(void **state)
 {
     ted4_trainer t;
@@ -237,7 +237,7 @@ static void test_networks(void **state)
 
 /* ---- collapse and divergence ---- */
 
-/* Steps until the monitor goes back; how many. */
+/* Trains until the monitor goes back. Returns the number of steps. */
 static int steps_until_back(ted4_trainer *t)
 {
     for (int i = 0; i < 60; i++) {
@@ -249,9 +249,9 @@ static int steps_until_back(ted4_trainer *t)
     return 0;
 }
 
-/* Everything is hidden by one thing: opacity of all offsets, spans that are over, extents of 2^-60.
- * Where it is not spans, these are set to all times: those that training left may hide half of what
- * is in view, and would be named. */
+/* Everything disappears for a single cause: the opacity of all offsets, spans that have ended, or
+ * extents of 2^-60. In the other two cases spans are set to the whole duration: the trained ones
+ * may hide half of what is in view, and would be named as the cause. */
 static void test_collapse(void **state)
 {
     static const char *const names[] = { "opacity", "activation", "scale" };
@@ -286,7 +286,7 @@ static void test_collapse(void **state)
     }
 }
 
-/* Everything turns white. */
+/* The picture turns white. */
 static void test_divergence(void **state)
 {
     ted4_trainer t;
@@ -303,8 +303,8 @@ static void test_divergence(void **state)
     finish(&t);
 }
 
-/* A screen that is nearly empty all at once is no failure where pictures lose nothing by it: so
- * much is usual from then on. */
+/* If the screen is suddenly nearly empty but pictures do not get worse, there is no failure: after
+ * a while this becomes the usual number of visible Gaussians. */
 static void test_empty_space(void **state)
 {
     ted4_trainer t;
@@ -322,9 +322,9 @@ static void test_empty_space(void **state)
     finish(&t);
 }
 
-/* ---- what is done ---- */
+/* ---- what follows ---- */
 
-/* All rates are smaller. */
+/* All learning rates become smaller. */
 static void test_smaller(void **state)
 {
     ted4_trainer t;
@@ -353,7 +353,7 @@ static void test_smaller(void **state)
     ted4_trainer_finish(&t);
 }
 
-/* A state from before compression changed the layout. */
+/* Going back to a state from before compression changed the layout. */
 static void test_other_layout(void **state)
 {
     ted4_train_options o = ball_options();
@@ -374,7 +374,8 @@ static void test_other_layout(void **state)
     finish(&t);
 }
 
-/* After three times it is over; the checkpoint still leads where it led. */
+/* After going back three times, training ends with an error; the checkpoint still leads to the same
+ * result. */
 static void test_three_times(void **state)
 {
     const ted4_train_options o = ball_options();
@@ -414,7 +415,7 @@ static void test_three_times(void **state)
     free(again.bytes);
 }
 
-/* From step 320 to the end, with a failure at 340 that goes back beyond 320. */
+/* Trains from step 320 to the end, with a failure at step 340 that goes back beyond step 320. */
 static ball_file fail_again(ted4_trainer *t)
 {
     ball_train(t, 340);
@@ -424,7 +425,7 @@ static ball_file fail_again(ted4_trainer *t)
     return ball_finish(t);
 }
 
-/* A checkpoint holds what a later failure goes back to. */
+/* A checkpoint contains the state to which a later failure goes back. */
 static void test_resumed(void **state)
 {
     const ted4_train_options o = ball_options();

@@ -1,5 +1,5 @@
-/* test_mv_seed.c - train/densify/mv_seed.h: a fast ball that no initial point stands for is found
- * where and when it is, and gets anchors. That they matter is shown on scenes: bench/report.md.
+/* test_mv_seed.c - train/densify/mv_seed.h: a fast ball without initial points is found at its
+ * positions and times, and gets anchors. Scenes show the effect on quality: bench/report.md.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdlib.h>
 #include <string.h>
@@ -11,7 +11,7 @@
 #include "train/densify/plane_sweep.h"
 #include "train/step/events.h"
 
-enum { SPEED = 2, STEPS = 120 }; /* the blue ball moves 0.5 a frame; its radius is 0.3 */
+enum { SPEED = 2, STEPS = 120 }; /* the blue ball moves 0.5 per frame; its radius is 0.3 */
 
 static int set_up_without_blue(void **state)
 {
@@ -38,7 +38,7 @@ static void test_search(void **state)
     (void)state;
     ball_begin(&t, &o, &balls, NULL);
     ball_train(&t, STEPS);
-    for (uint32_t f = 0; f < 3; f++) { /* then it leaves the pictures */
+    for (uint32_t f = 0; f < 3; f++) { /* then it leaves the views */
         const size_t first = list.n;
         size_t near = 0;
 
@@ -58,7 +58,7 @@ static void test_search(void **state)
     ted4_trainer_finish(&t);
 }
 
-/* However long the sequence, each frame may have a place, and all of them together are bounded. */
+/* In a sequence of any length each frame may get a place, and their total number is bounded. */
 static void test_long(void **state)
 {
     const ted4_train_options o = options(0.3);
@@ -83,8 +83,8 @@ static void test_long(void **state)
     balls.n_frames = frames;
 }
 
-/* Growth leaves anchors unused, multi-view seeding takes it: short lives, at the ball, at its time.
- */
+/* Multi-view seeding uses the anchors that growth leaves: short-lived anchors, at the ball and at
+ * its times. */
 static void test_mv_seed(void **state)
 {
     const ted4_train_options o = options(0.3);
@@ -124,7 +124,7 @@ static void test_impossible(void **state)
     assert_int_equal(t.anchors.n + ted4_growth_allowance(&t), 320);
     ted4_trainer_finish(&t);
     o.activation = 1;
-    for (size_t i = 0; i < balls.n_pictures; i++) /* two cameras a time */
+    for (size_t i = 0; i < balls.n_pictures; i++) /* two cameras per frame */
         balls.pictures[i].is_test = balls.pictures[i].camera_id >= 2;
     ball_begin(&t, &o, &balls, NULL);
     assert_int_equal(ted4_mv_seed_reach(&t), -1);

@@ -1,6 +1,6 @@
-/* test_nan.c - a value of the model that is not finite: it never reaches a checkpoint, and the last
- * checkpoint still leads where it led. A loss that is not finite ends the training before it
- * reaches the model.
+/* test_nan.c - a model value that is not finite never reaches a checkpoint, and the last checkpoint
+ * still leads to the same result. A loss that is not finite ends the training before it affects the
+ * model.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "test.h"
 #include "ball_trainer.h"
@@ -8,8 +8,8 @@
 #include "train/monitor/monitor.h"
 #include "train/train.h"
 
-/* A value goes bad between two checks: no checkpoint is made of it, the last one is untouched and
- * leads where it led. */
+/* A value becomes infinite or NaN between two checks: no checkpoint is made of it, and the last one
+ * is unchanged and leads to the same result. */
 static void test_nan(void **state)
 {
     const ted4_train_options o = ball_options();
@@ -38,7 +38,7 @@ static void test_nan(void **state)
             *ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, 3, 0) = INFINITY;
         assert_int_equal(ted4_checkpoint_save(&t, path), -1);
         assert_non_null(strstr(t.message.text, "not finite at step 130"));
-        ted4_monitor_forget(&t); /* else the step would go back: test_monitor.c */
+        ted4_monitor_forget(&t); /* else the step goes back (test_monitor.c) */
         assert_int_equal(ted4_trainer_step(&t), -1);
         assert_non_null(
             strstr(t.message.text, "not finite at step 130; there is no good state before it"));
@@ -59,8 +59,7 @@ static void test_nan(void **state)
     tiny_free(&f);
 }
 
-/* A camera's map that is no number is found before a step, which has changed neither networks nor
- * anchors. */
+/* A NaN in a camera's map is detected before a step changes networks or anchors. */
 static void test_colour(void **state)
 {
     const ted4_train_options o = ball_options();

@@ -1,5 +1,5 @@
-/* test_options.c - train/model/options.h: presets, name=value with every way to get it wrong, the
- * hash that ties checkpoints to options, the help table.
+/* test_options.c - train/model/options.h: presets, name=value with every possible error, the hash
+ * that ties checkpoints to options, the help table.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdio.h>
 #include <stdlib.h>
@@ -123,8 +123,8 @@ static void test_bad_text(void **state)
     assert_memory_equal(&o, &before, sizeof o);
 }
 
-/* Every option, moved by itself, gives a hash of its own; one of stage 2 leaves the hash of stage
- * 1. */
+/* A change of any single option gives a different hash; an option of stage 2 does not change the
+ * hash of stage 1. */
 static void test_hash(void **state)
 {
     static uint64_t hash[N_OPTIONS + 2];

@@ -1,8 +1,9 @@
-/* test_phases.c - what happens when during training (paper, "Progressive 3D-to-4D Anchor
- * Transformation"): activation begins after the static phase, from the first and last time at which
- * training views see an anchor; anchors come and go within the time that growth has; stage 2 only
- * ever loses them, at its begin; pictures come in rounds, drawn from plain values, then from values
- * with noise, then from those that the file will hold. Single steps: test_densify.c, test_traps.c.
+/* test_phases.c - the course of training (paper, "Progressive 3D-to-4D Anchor Transformation"):
+ * activation begins after the static phase, from the first and last time at which training views
+ * see an anchor; anchors are added and pruned within the time of growth; stage 2 only removes
+ * anchors, at its beginning; pictures come in rounds, and are rendered from plain values, then from
+ * values with noise, then from those that the file will hold. Single steps: test_densify.c,
+ * test_traps.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "test.h"
 #include "ball_group.h"
@@ -27,11 +28,11 @@ static float tau(const ted4_trainer *t, size_t i, int c)
 
 /* ---- first and last visible time ---- */
 
-/* World units between the two halves of the cloud: far more than a picture shows. */
+/* Distance between the two halves of the cloud, in world units: far more than a picture shows. */
 #define APART 40.0
 
-/* Every other point of a cloud lies far to the right. One camera sees the left half, in frames 1 to
- * 3; the other the right half, in frames 2 to 4 and, held out, in frames 0 and 1. */
+/* Every second point of a cloud lies far to the right. One camera sees the left half, in frames 1
+ * to 3; the other the right half, in frames 2 to 4 and, held out, in frames 0 and 1. */
 static void make_halves(cloud_case *c, ted4_picture *pictures)
 {
     size_t n = 0;
@@ -95,9 +96,9 @@ static void test_spans(void **state)
 
 /* ---- when activation is learnt ---- */
 
-/* Anchors that are not short-lived: those whose span is all times, as it was before activation;
- * those whose span lies inside and has moved since it began. A short-lived one is there at three of
- * the five times at most: 0.625 with what its span goes beyond them. */
+/* Numbers of anchors: those whose span is still the whole duration, as before activation; those
+ * whose span lies inside it and has changed since; and short-lived ones. A short-lived anchor lives
+ * for at most three of the five frames: 0.625, including the margins of its span. */
 typedef struct {
     size_t whole, learnt, short_lived;
 } spans;
@@ -118,7 +119,8 @@ static spans count_spans(const ted4_trainer *t)
     return n;
 }
 
-/* Is the activation of every anchor still one that an anchor began with? Growth copies it. */
+/* Whether the activation of every anchor still equals that of an initial anchor. Growth copies
+ * it. */
 static int are_seeds(const ted4_trainer *t, const float *seed, size_t n)
 {
     for (size_t i = 0; i < t->anchors.n; i++) {
@@ -133,8 +135,8 @@ static int are_seeds(const ted4_trainer *t, const float *seed, size_t n)
     return 1;
 }
 
-/* In the static phase nothing is learnt, not even by short-lived anchors, which fade in and out
- * already. */
+/* In the static phase no activation is learnt, not even that of short-lived anchors, which already
+ * fade in and out. */
 static void test_static_phase(void **state)
 {
     const ted4_train_options o = ball_options();
@@ -215,7 +217,7 @@ static void test_growth(void **state)
 
 /* ---- in which order ---- */
 
-/* Each training picture once a round, no held-out one, and every round in another order. */
+/* Every round contains each training picture once and no held-out one, in a different order. */
 static void test_order(void **state)
 {
     enum { ROUNDS = 3, MOST = 64 };
@@ -246,7 +248,7 @@ static void test_order(void **state)
 
 /* ---- what is drawn ---- */
 
-/* How far the last step's values were from whole symbols, in mean: a quarter with noise. *most: the
+/* Mean distance of the last step's values from whole symbols: a quarter with noise. *most: the
  * largest. */
 static double off_symbols(const ted4_trainer *t, double *most)
 {
@@ -274,7 +276,7 @@ static double off_symbols(const ted4_trainer *t, double *most)
     return sum / n;
 }
 
-/* Are the step sizes of all anchors those of the decoder's table (spec 10.1)? */
+/* Whether the step sizes of all anchors are those of the decoder's table (spec 10.1). */
 static int steps_are_tabled(const ted4_trainer *t)
 {
     for (size_t i = 0; i < t->anchors.n; i++)
@@ -299,7 +301,7 @@ static void test_drawn(void **state)
     ball_train(&t, STAGE1);
     for (size_t i = 0; i < t.visible_blocks.n; i++)
         assert_ptr_equal(t.visible_blocks.used[i], t.visible_blocks.raw[i]);
-    for (size_t i = 0; i < t.anchors.n; i++) /* offset masks wait for the rate */
+    for (size_t i = 0; i < t.anchors.n; i++) /* offset masks stay at 1 in stage 1 */
         for (int k = 0; k < t.layout.head.n_offsets; k++)
             assert_true(*ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, i,
                                            t.layout.offset_logit + k) == 1.0f);

@@ -1,5 +1,5 @@
-/* test_photo_votes.c - train/densify/photo_votes.c: over which times a colour is there, from how
- * many cameras look and how many agree at each.
+/* test_photo_votes.c - train/densify/photo_votes.c: the span in which a colour is present at a
+ * point, from the number of cameras that look and the number that agree at each time.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <string.h>
 
@@ -8,8 +8,8 @@
 
 enum { FRAMES = 12, CAMERAS = 6 };
 
-/* One point; a letter a time: '#' all cameras agree, '+' five of six, '-' four, '=' three, '.'
- * none, '?' too few look there to tell. */
+/* One point, with one letter per time: '#' all cameras agree, '+' five of six, '-' four, '=' three,
+ * '.' none, '?' too few cameras see the point to decide. */
 static ted4_photo_votes seen(const char *times, uint16_t look[FRAMES], uint16_t hits[FRAMES])
 {
     assert_int_equal(strlen(times), FRAMES);
@@ -50,8 +50,8 @@ static void test_run(void **state)
     expect_span("............", 3, "none");
 }
 
-/* Clearly fewer cameras than at its best are taken for chance; where its best is no better, half of
- * them will do. */
+/* If clearly fewer cameras agree than at the best time, they agree by chance; if the best time is
+ * no better, half of the cameras suffice. */
 static void test_chance(void **state)
 {
     (void)state;
@@ -74,7 +74,7 @@ static void test_stays(void **state)
     expect_span("#####..#####", 2, "none");
 }
 
-/* What comes back is there twice, whichever time is its best. */
+/* A colour that returns has two spans; the one with the given best time is found. */
 static void test_comes_back(void **state)
 {
     (void)state;
@@ -93,8 +93,7 @@ static void test_unknown(void **state)
     expect_span("..#???????..", 2, "2-2 before 1 after 8");
     expect_span("..#.????????", 2, "2-2 before 1 after 1");
     expect_span("..##????????", 2, "2-11 before 1 after 1");
-    expect_span(".####???????", 2,
-                "none"); /* gone at less than a quarter of the times that are known */
+    expect_span(".####???????", 2, "none"); /* absent at less than a quarter of the known times */
     expect_span("..#?#.......", 3, "none");
 }
 

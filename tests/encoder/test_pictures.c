@@ -1,5 +1,6 @@
-/* test_pictures.c - pictures of every kind that PNG and JPEG have come out as bytes that are right,
- * or are refused; alpha that is straight, as PNG says, or premultiplied, as some programs write it.
+/* test_pictures.c - pictures of every kind that PNG and JPEG allow are decoded to the correct
+ * bytes, or are refused; alpha is straight, as PNG specifies, or premultiplied, as some programs
+ * write it.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdio.h>
 
@@ -11,14 +12,14 @@
 
 enum { W = 11, H = 9 };
 
-/* Sample c of pixel (x, y) of 8 bits. */
+/* Sample c of pixel (x, y) with 8 bits. */
 static int level(int x, int y, int c)
 {
     return c == 3 ? (x * 23 + y) % 256 : (x * 20 + y * 7 + c * 40) % 256;
 }
 
-/* kind: PNG_COLOR_TYPE_*. Samples of 16 bits are 257 times those of 8, less 100 where that rounds
- * to the same. */
+/* kind: PNG_COLOR_TYPE_*. Samples of 16 bits are 257 times those of 8 bits, less 100 where that
+ * rounds to the same value. */
 static void write_png(const char *path, int kind, int depth, int interlace,
                       const png_color_16 *clear)
 {
@@ -97,8 +98,8 @@ static void test_png(void **state)
         }
         free(image.bytes);
     }
-    /* Cut anywhere, the last one, interlaced and of 16 bits, is an error; its header alone is none
-     * to one who reads headers. */
+    /* The last picture, interlaced and with 16 bits, is an error if cut at any length; reading only
+     * its header is not. */
     const size_t n = tiny_size(&f, "a.png");
     for (size_t k = n - 1; k > 8; k -= 5) {
         ted4_image image;
@@ -111,7 +112,7 @@ static void test_png(void **state)
     tiny_free(&f);
 }
 
-/* One colour of a PNG without alpha that stands for transparent. */
+/* A colour of a PNG without alpha that is declared transparent. */
 static void test_clear_colour(void **state)
 {
     tiny_folder f = tiny_new();
@@ -170,14 +171,14 @@ static void test_jpeg(void **state)
     write_jpeg(path, JCS_CMYK, 4, 0, 0);
     assert_int_equal(ted4_image_probe(path, &header, &m), -1);
     assert_non_null(strstr(m.text, "a.jpg: JPEG of 4 colours (CMYK?), expected grey or RGB"));
-    /* A reader of the pixels alone ends with an error, too. */
+    /* Reading the pixels alone fails, too. */
     assert_int_equal(ted4_image_read(path, &image, &m), -1);
     assert_null(image.bytes);
     tiny_free(&f);
 }
 
-/* Half-transparent orange: straight 200 100 0, premultiplied 100 50 0; then what no premultiplied
- * picture has, brighter than white. */
+/* Half-transparent orange: 200 100 0 straight, 100 50 0 premultiplied; then colours brighter than
+ * white, which no premultiplied picture contains. */
 static void test_alpha(void **state)
 {
     const uint8_t straight[16] = {
@@ -215,7 +216,8 @@ static void test_alpha(void **state)
     tiny_free(&f);
 }
 
-/* Half-transparent pictures of 48 x 48 in colours 100 for alpha 90 or 110, declared so or so. */
+/* Half-transparent pictures of 48 x 48, with colours of 100 and an alpha of 90 or 110, declared as
+ * straight or premultiplied. */
 static void test_alpha_doubt(void **state)
 {
     static uint8_t px[48 * 48 * 4];

@@ -1,5 +1,5 @@
-/* test_prune_units.c - train/math/prune_units.c: which unit goes first, what makes up for it, and
- * what may not go.
+/* test_prune_units.c - train/math/prune_units.c: which unit is removed first, how the others
+ * replace it, and which must stay.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 
@@ -9,7 +9,7 @@
 
 enum { N = 4, SIDE = N + 1, SAMPLES = 500, ROWS = 2 };
 
-/* Units 0, 1 and 3 are independent, unit 2 is unit 0 minus twice unit 1 plus 3. */
+/* Units 0, 1 and 3 are independent; unit 2 is unit 0 minus twice unit 1 plus 3. */
 static void draw(int i, double x[SIDE])
 {
     x[0] = (double)ted4_uniform(1, (uint64_t)i);
@@ -41,7 +41,7 @@ static int keeps(const ted4_pruned_units *w, int unit)
     return 0;
 }
 
-/* Largest difference between what readers read before and after. */
+/* Largest difference between the readers' inputs before and after pruning. */
 static double worst(const ted4_pruned_units *w, const float *readers)
 {
     double most = 0;
@@ -79,7 +79,7 @@ static void test_dependent(void **state)
     moments(m);
     assert_int_equal(ted4_prune_units(&w, &u, N - 1), 0);
     assert_int_equal(w.to, N - 1);
-    assert_true(keeps(&w, 3)); /* the one that none of the others knows */
+    assert_true(keeps(&w, 3)); /* the unit that the others cannot replace */
     if (worst(&w, readers) > 1e-3)
         fail_msg("%g is missed", worst(&w, readers));
     ted4_pruned_units_finish(&w);
@@ -106,7 +106,7 @@ static void test_nothing_gone(void **state)
     ted4_pruned_units_finish(&w);
 }
 
-/* A unit that nobody reads goes before any other. */
+/* A unit without readers is removed first. */
 static void test_unread(void **state)
 {
     static const float readers[ROWS * N] = { 1, 0, 3, 4, -1, 0, 2, 0.5f };
