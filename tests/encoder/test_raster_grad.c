@@ -15,18 +15,18 @@ enum { GROUPS = 5 };
 static const int group_first[GROUPS + 1] = { SCENE_MEAN,    SCENE_SCALE,  SCENE_ROT,
                                              SCENE_OPACITY, SCENE_COLOUR, SCENE_PARAMS };
 
-/* The step is so small that few Gaussians reach another pixel, or stop reaching one, within it;
- * those that do, a jump, are found by a second, smaller step: a jump of height J adds J / step, so
- * the two results differ by far more than this share. */
+/* The step is so small that few Gaussians reach another pixel, or stop reaching one, within it.
+ * Such a jump is detected by a second, smaller step: a jump of height J adds J / step, so the two
+ * results differ by far more than this share. */
 #define STEP_ULPS      32
 #define SMALL_ULPS     8
 #define JUMP_TOLERANCE 1e-3
-/* Float gradients against double differences: share of the value, plus share of the largest
- * gradient in its group. */
+/* Tolerances between float gradients and double differences: relative to the value, plus relative
+ * to the largest gradient in its group. */
 #define RELATIVE       2e-3
 #define ABSOLUTE       2e-5
 #define COSINE         0.99999
-/* At most this share of the parameters may sit on a jump. */
+/* The largest share of parameters that may be at a jump. */
 #define MAX_JUMPS      0.02
 
 typedef struct {
@@ -71,8 +71,8 @@ static double loss(const problem *p)
     return sum;
 }
 
-/* Central difference over a step of so many units in the last place of x: exact steps, though x is
- * float. */
+/* Central difference with a step of ulps units in the last place of x: the steps are exact,
+ * although x is float. */
 static double difference(const problem *p, float *x, int ulps)
 {
     const float keep = *x, h = (fabsf(keep) + 0.05f) * 0x1p-23f * (float)ulps;
@@ -102,7 +102,7 @@ static ted4_splat_grads grads_of(const scene *d, float *mean2d, uint8_t *visible
     return g;
 }
 
-/* Analytic gradients of p into d, same layout as the scene. */
+/* Computes the analytic gradients of p into d, in the layout of the scene. */
 static void gradients(const problem *p, const ted4_parallel *threads, scene *d, float *mean2d,
                       uint8_t *visible)
 {
@@ -113,7 +113,7 @@ static void gradients(const problem *p, const ted4_parallel *threads, scene *d, 
     ted4_adjoint *adjoint = must(ted4_adjoint_new());
 
     memset(d->value, 0xff,
-           p->s.n * SCENE_PARAMS * sizeof(float)); /* NaN: all must be overwritten */
+           p->s.n * SCENE_PARAMS * sizeof(float)); /* NaN: each must be overwritten */
     assert_int_equal(ted4_raster_forward(r, &g, &p->v, threads, 1, image), 0);
     assert_int_equal(ted4_raster_backward(adjoint, r, &g, &p->v, threads, p->d_image, &grads), 0);
     ted4_adjoint_free(adjoint);
@@ -188,7 +188,7 @@ static void test_random(void **state)
     }
 }
 
-/* Opacity over the cap at and around the centre: there only colour has a gradient. */
+/* The opacity exceeds the cap at and around the centre: there only colour has a gradient. */
 static void test_cap(void **state)
 {
     const ted4_view v = scene_view(20, 20);
@@ -201,7 +201,7 @@ static void test_cap(void **state)
     free_problem(&p);
 }
 
-/* So many opaque Gaussians that every pixel finishes early. */
+/* So many opaque Gaussians that every pixel stops early. */
 static void test_early_stop(void **state)
 {
     const ted4_view v = scene_view(16, 12);
@@ -214,7 +214,7 @@ static void test_early_stop(void **state)
     free_problem(&p);
 }
 
-/* Centres outside the guard band, to all four sides, but large enough to be seen: the Jacobian's
+/* Centres outside the guard band, on all four sides, but large enough to be visible: the Jacobian's
  * slope is clamped. */
 static void test_clamped_jacobian(void **state)
 {
@@ -234,7 +234,7 @@ static void test_clamped_jacobian(void **state)
 }
 
 /* Behind the camera, too faint, off the image; near the camera; needles; and one rotation that is
- * not quite unit, since the gradient is that of the polynomial R(q). */
+ * not quite normalised, since the gradient is that of the polynomial R(q). */
 static void test_awkward(void **state)
 {
     const ted4_view v = scene_view(24, 24);
@@ -256,10 +256,10 @@ static void test_awkward(void **state)
     free_problem(&p);
 }
 
-/* mean2d is the image-plane gradient in half image sizes: for a Gaussian on the optical axis,
- * moving the mean by z / fx along the camera's x axis moves the centre by one pixel and leaves all
- * else, to first order, but the Jacobian; a tiny Gaussian does not notice the Jacobian. visible
- * tells who had a tile. */
+/* mean2d is the image-plane gradient in units of half the image size. For a Gaussian on the optical
+ * axis, moving the mean by z / fx along the camera's x axis moves the centre by one pixel and, to
+ * first order, changes nothing else except the Jacobian, whose effect on a tiny Gaussian is
+ * negligible. visible says which Gaussians had a tile. */
 static void test_mean2d(void **state)
 {
     ted4_view v = scene_view(32, 16);

@@ -1,6 +1,6 @@
-/* test_rate.c - train/rate*.c and quantise.c: bits against the double model, the noise, the
- * quantiser, threads, lanes that are not there, the integer mode, and clamped outputs (annex D.1:
- * sigma clamped from below, steps near 0).
+/* test_rate.c - train/rate/*.c: bits against the model in double precision, the noise, the
+ * quantiser, threads, unused lanes, the integer mode, and clamped outputs (annex D.1: sigma clamped
+ * from below, steps near 0).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "test.h"
 #include "tool/threads.h"
@@ -22,7 +22,8 @@ static void fill_noise(ref_world *w, float *noise[REF_BLOCKS])
     }
 }
 
-/* Bits of every type, and steps, against the double model, whichever lanes are in use. */
+/* Compares the bits of every type, and the steps, with the model in double precision, for any set
+ * of used lanes. */
 static void check_world(ref_world *w)
 {
     double bits[TED4_TYPES], want[TED4_TYPES] = { 0 }, total = 0.0;
@@ -70,7 +71,7 @@ static void variant(ted4_header *h, int which)
         h->offset_mask = h->temporal_mask = 0, h->hyper_layers = 0, h->hyper_width = 0;
 }
 
-enum { VARIANTS = 6 }; /* the last: static phase */
+enum { VARIANTS = 6 }; /* the last variant: static phase */
 
 static void test_values(void **state)
 {
@@ -89,7 +90,7 @@ static void test_values(void **state)
         }
 }
 
-/* Garbage in unused lanes touches nothing: neither sums, nor gradients, nor steps of the others. */
+/* NaN in unused lanes has no effect on sums, gradients or steps of the other lanes. */
 static void test_unused_lanes(void **state)
 {
     static ref_world w;
@@ -120,8 +121,8 @@ static void test_unused_lanes(void **state)
     ref_world_finish(&w);
 }
 
-/* Mean 0, variance 1/12, flat, and no correlation between channels, lanes, blocks or keys: each
- * within 5 standard deviations. */
+/* Mean 0, variance 1/12, a flat distribution, and no correlation between channels, lanes, blocks or
+ * keys: each within 5 standard deviations. */
 static void test_noise(void **state)
 {
     static ref_world w;
@@ -159,7 +160,7 @@ static void test_noise(void **state)
             }
         memcpy(before, now, size * sizeof *now);
     }
-    const double five = 5.0 / sqrt(n); /* standard deviations of a mean of n */
+    const double five = 5.0 / sqrt(n); /* 5 standard deviations of a mean of n */
 
     assert_true(fabs(sum / n) < five * sqrt(1.0 / 12.0));
     assert_true(fabs(square / n - 1.0 / 12.0) < five * sqrt(1.0 / 180.0));
@@ -175,8 +176,8 @@ static void test_noise(void **state)
     ref_world_finish(&w);
 }
 
-/* k q with the nearest k within the range of symbols; logits untouched; a_f never before a_s, in
- * either mode. */
+/* Values become k q with the nearest k within the range of symbols; logits are unchanged; a_f is
+ * never before a_s, in either mode. */
 static void test_quantise(void **state)
 {
     static ref_world w;
@@ -271,7 +272,8 @@ static void crowd_finish(crowd *c)
     ref_world_finish(&c->w);
 }
 
-/* n visible blocks from first on, gradients from zero; a hash of those of the values. */
+/* Runs n visible blocks, starting at first, with gradients from zero. Returns a hash of the
+ * gradients of the values. */
 static uint64_t crowd_run(crowd *c, const ted4_parallel *p, size_t first, size_t n)
 {
     const size_t size = (size_t)c->w.layout.n_channels * TED4_LANES;
@@ -294,7 +296,7 @@ static uint64_t crowd_run(crowd *c, const ted4_parallel *p, size_t first, size_t
     return sum;
 }
 
-/* The same bits of every result in any order and for any number of threads. */
+/* All results are bit-identical in any order and for any number of threads. */
 static void test_threads(void **state)
 {
     static crowd c;
@@ -319,8 +321,8 @@ static void test_threads(void **state)
     crowd_finish(&c);
 }
 
-/* Chunks and waves lose nothing: all visible blocks at once are the sum of visible blocks one by
- * one. */
+/* Chunks and waves lose nothing: the result for all visible blocks is the sum of the results for
+ * single ones. */
 static void test_sums(void **state)
 {
     static crowd c;
@@ -350,7 +352,7 @@ static void test_sums(void **state)
     crowd_finish(&c);
 }
 
-/* Without gradients, and with nothing but steps, the numbers are the same. */
+/* The numbers are the same without gradients, and if only steps are requested. */
 static void test_partial(void **state)
 {
     static ref_world w;
@@ -373,7 +375,7 @@ static void test_partial(void **state)
     ref_world_finish(&w);
 }
 
-/* Gradients may be added to the very blocks that hold the rendering's. */
+/* Gradients may be added in place, in the blocks that hold the gradients from rendering. */
 static void test_shared_gradients(void **state)
 {
     static ref_world w;
@@ -393,8 +395,8 @@ static void test_shared_gradients(void **state)
     ref_world_finish(&w);
 }
 
-/* Items 3 and 5: sigma and steps driven far out of range by their biases. Steps stay within 2^-4 ..
- * 2^(127/32) of Q0, and descent brings both back. */
+/* Traps 3 and 5 of annex D.1: biases drive sigma and steps far out of range. Steps stay within 2^-4
+ * .. 2^(127/32) of Q0, and gradient descent brings both back. */
 static void test_clamped_outputs_recover(void **state)
 {
     static ref_world w;
@@ -419,7 +421,7 @@ static void test_clamped_outputs_recover(void **state)
                                      0.0));
         const float *d = w.d_net + (ref_bias(&w, 0) - w.net);
 
-        for (unsigned c = 0; c < 6; c++) /* down is forbidden when low, up when high */
+        for (unsigned c = 0; c < 6; c++) /* down is impossible if low, up if high */
             assert_true(high ? d[sigma + c] > 0.0f : d[sigma + c] < 0.0f);
         if (!high)
             assert_true(d[v + TED4_FEATURE] < 0.0f);
@@ -427,8 +429,8 @@ static void test_clamped_outputs_recover(void **state)
     }
 }
 
-/* TED4_QUANT_INTEGER is the decoder: bits from mu, sigma index, step index of norm/prior.h, k an
- * integer. */
+/* TED4_QUANT_INTEGER equals the decoder: bits from mu, sigma index and step index of norm/prior.h,
+ * with an integer k. */
 static double integer_bits(const ref_world *w, const ted4_prior *p, int visible, double *bits)
 {
     const ted4_layout *l = &w->layout;
@@ -466,7 +468,7 @@ static double integer_bits(const ref_world *w, const ted4_prior *p, int visible,
                 if (t == TED4_FEATURE)
                     context[c * 64 + (unsigned)j] = ted4_context(k, i, l->head.context_bits);
                 if (t == TED4_TAU && c == 2)
-                    continue; /* set apart by the test: a_f > a_s */
+                    continue; /* the test ensures a_f > a_s separately */
                 bits[t] += b;
                 total += b;
             }

@@ -1,13 +1,13 @@
-/* test_rate_grad.c - every gradient of train/rate*.c against central differences of the double
- * model of rate_ref.h, residuals held fixed: values, mask logits, weights of hyperprior and slices;
- * at random points and at awkward ones.
+/* test_rate_grad.c - every gradient of train/rate/*.c against central differences of the
+ * double-precision model in rate_ref.h, with residuals held fixed: values, mask logits, weights of
+ * hyperprior and slices; at random points and at edge cases.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "test.h"
 #include "rate_ref.h"
 
 enum { MAX_ANCHORS = 16 };
 
-/* The anchors in use and what is clamped at each of them. */
+/* The anchors in use, and which outputs are clamped for each of them. */
 typedef struct {
     ref_model model;
     ref_anchor anchor[MAX_ANCHORS];
@@ -51,7 +51,7 @@ static double loss(int i)
     return r.loss;
 }
 
-/* Central difference of the losses of anchors [first, end) by *x. */
+/* Central difference by *x of the summed losses of anchors [first, end). */
 static double slope(double *x, double h, int first, int end)
 {
     const double at = *x;
@@ -67,7 +67,8 @@ static double slope(double *x, double h, int first, int end)
     return (up - down) / (2.0 * h);
 }
 
-/* Relative to the gradient, or to the sum of what may have cancelled in it. */
+/* The error is relative to the gradient, or to the sum of the terms that may have cancelled in
+ * it. */
 static void check(double got, double want, double scale)
 {
     if (!(fabs(got - want) <= 1e-3 * fabs(want) + 1e-4 * scale))
@@ -184,7 +185,7 @@ static void test_variants(void **state)
     }
 }
 
-/* Every fourth output pushed out of range, on either side, v too: gradients follow the one-sided
+/* Every fourth output is moved out of range, on either side, also v: gradients follow the one-sided
  * rule (annex D.1, traps). */
 static void test_clamped(void **state)
 {
@@ -210,8 +211,8 @@ static void test_clamped(void **state)
     }
 }
 
-/* Values far out in the tail, some with sigma at its floor: the pull is finite and right (annex
- * D.1, traps). */
+/* Values far out in the tail, some with sigma at its lower limit: the gradient is finite and
+ * correct (annex D.1, traps). */
 static void test_outliers(void **state)
 {
     static ref_world w;
@@ -235,7 +236,7 @@ static void test_outliers(void **state)
     ref_world_finish(&w);
 }
 
-/* Nothing of a pruned anchor counts but the pull to drop, or keep, its offsets. */
+/* A pruned anchor contributes nothing except the gradient that drops, or keeps, its offsets. */
 static void test_all_masked(void **state)
 {
     static ref_world w;

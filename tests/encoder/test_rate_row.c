@@ -22,7 +22,7 @@ static int close_to(double got, double want, double relative, double absolute)
     return fabs(got - want) <= absolute + relative * fabs(want);
 }
 
-/* Bits to 2e-5 wherever sigma and distance lie; derivatives to 1e-4 of their size. */
+/* Bits agree to 2e-5 for every sigma and distance; derivatives to 1e-4 of their size. */
 static void test_row_values(void **state)
 {
     (void)state;
@@ -53,8 +53,8 @@ static void test_row_values(void **state)
     }
 }
 
-/* Item 4: far out and farther, bits are finite and grow, and the gradient leads back; in the
- * plateau at 16 bits too. */
+/* Trap 4 of annex D.1: at any distance, bits are finite and grow, and the gradient leads back, also
+ * on the plateau at 16 bits. */
 static void test_outliers_have_gradient(void **state)
 {
     static const float distance[] = { 1.4f, 5.5f, 40.0f, 1e3f, 1e5f, 1e8f, 1e20f, 3e38f };
@@ -67,7 +67,7 @@ static void test_outliers_have_gradient(void **state)
             r.s[j] = -4.0f + 0.1f * (float)(j / 2);
             r.u[j] = (j % 2 ? -1.0f : 1.0f) * distance[i];
             if (distance[i] < 1e5f && i > 0)
-                r.u[j] *= exp2f(r.s[j]) + 0.5f / distance[i]; /* sigmas beyond the bin of 0 */
+                r.u[j] *= exp2f(r.s[j]) + 0.5f / distance[i]; /* sigmas, beyond the bin of 0 */
         }
         run_row(&r);
         for (int j = 0; j < TED4_LANES; j++) {
@@ -84,7 +84,7 @@ static void test_outliers_have_gradient(void **state)
     }
 }
 
-/* What the coder of spec 9.4 spends on k. */
+/* Bits that the coder of spec 9.4 spends on k. */
 static double coder_bits(int32_t mu, unsigned g, int32_t k)
 {
     const ted4_gauss_symbol s = ted4_gauss_of(mu, g, k);
@@ -107,9 +107,10 @@ static double model_bits(int32_t mu, unsigned g, int32_t k)
     return (double)r.bits[0];
 }
 
-/* Where symbols are likely, the model is the coder; at the floor and in escapes it is within 3
- * bits, also beyond sigma 682, where the window is narrower than the distribution, but for the few
- * symbols about its edge, 4095.5 on one side and 4096.5 on the other. */
+/* Where symbols are likely, the model agrees with the coder. At the lower limit of sigma and in
+ * escapes it is within 3 bits, also beyond sigma 682, where the window is narrower than the
+ * distribution, except for the few symbols at the window's edge, 4095.5 on one side and 4096.5 on
+ * the other. */
 static void test_row_is_the_coder(void **state)
 {
     (void)state;

@@ -1,6 +1,7 @@
-/* test_rate_subset.c - train/step/apply_gradients.c, the rate terms of a step: evaluated on a
- * random share of the blocks, every block as often as any other, in mean worth the gradient of all
- * blocks; lambda weighs the mean bits of a parameter; the same bits for any number of threads.
+/* test_rate_subset.c - train/step/apply_gradients.c, the rate terms of a step: they are evaluated
+ * on a random share of the blocks, every block equally often, and their mean is the gradient of all
+ * blocks; lambda multiplies the mean bits per parameter; results are bit-identical for any number
+ * of threads.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdlib.h>
 
@@ -13,13 +14,13 @@
 #include "train/step/stages.h"
 #include "train/step/trainer_init.h"
 
-/* 216 anchors in 7 blocks, of which a share of 0.15 is 2. */
+/* 216 anchors in 7 blocks, of which a share of 0.15 is 2 blocks. */
 enum { BLOCKS = (CLOUD_POINTS + TED4_LANES - 1) / TED4_LANES, CHOSEN = 2, KEYS = 700 };
 #define SHARE 0.15
 
 static cloud_case cloud;
 
-/* At the begin of stage 2, with all anchors. */
+/* Begins stage 2, with all anchors. */
 static void begin(ted4_trainer *t, const ted4_parallel *p)
 {
     cloud_make(&cloud, 5);
@@ -31,8 +32,8 @@ static void begin(ted4_trainer *t, const ted4_parallel *p)
     assert_int_equal(t->anchors.n_blocks, BLOCKS);
 }
 
-/* Gradients of the rate alone, or on top of d_value on every value, which then reach the step sizes
- * too. */
+/* Computes the gradients of the rate, added to a gradient d_value of every value. If that is not 0,
+ * it reaches the step sizes too. */
 static void run(ted4_trainer *t, uint64_t key, double share, float d_value)
 {
     const size_t floats = (size_t)t->layout.n_channels * TED4_LANES;
@@ -48,8 +49,8 @@ static void run(ted4_trainer *t, uint64_t key, double share, float d_value)
         fail_msg("%s", t->message.text);
 }
 
-/* Sum of the gradients of a block's offset masks: bits of offsets times the slope of the sigmoid, 0
- * for blocks that were not chosen. */
+/* Sum of the gradients of a block's offset masks: bits of offsets times the slope of the sigmoid,
+ * or 0 for blocks that were not chosen. */
 static double of_masks(const ted4_trainer *t, size_t visible)
 {
     double sum = 0;
@@ -82,17 +83,17 @@ static void test_choice(void **state)
         }
         assert_int_equal(n, CHOSEN);
     }
-    /* 200 times each, and a standard deviation of 12. */
+    /* Each is chosen 200 times on average, with a standard deviation of 12. */
     for (int b = 0; b < BLOCKS; b++)
         if (abs(often[b] - KEYS * CHOSEN / BLOCKS) > 60)
             fail_msg("block %d was chosen %d times of %d", b, often[b], KEYS);
     ted4_trainer_finish(&t);
 }
 
-/* ---- what it is worth ---- */
+/* ---- weights ---- */
 
-/* Rate: lambda times the mean bits of a parameter, absent ones included, over the anchors looked
- * at. All masks are at 1. */
+/* The rate is lambda times the mean bits per parameter, absent ones included, over the evaluated
+ * anchors. All mask logits are 1. */
 static void test_weight(void **state)
 {
     static const double shares[] = { SHARE, 1 };
@@ -110,7 +111,7 @@ static void test_weight(void **state)
         run(&t, 5, shares[k], 0);
         for (size_t i = 0; i < BLOCKS; i++)
             sum += of_masks(&t, i);
-        bits = t.progress.bits[TED4_OFFSET] / 0.02; /* an anchor; a running mean's first step */
+        bits = t.progress.bits[TED4_OFFSET] / 0.02; /* per anchor; first step of a running mean */
         if (!(bits > 5 && fabs(sum - t.opt.lambda * slope * bits / params) < 1e-4 * sum))
             fail_msg("share %g: %g for %g bits an anchor of %g parameters", shares[k], sum, bits,
                      params);
@@ -118,7 +119,7 @@ static void test_weight(void **state)
     ted4_trainer_finish(&t);
 }
 
-/* Twice the lambda, twice every gradient, to the bit. */
+/* Twice the lambda gives exactly twice every gradient. */
 static void test_lambda(void **state)
 {
     ted4_trainer t;
@@ -139,8 +140,8 @@ static void test_lambda(void **state)
     ted4_trainer_finish(&t);
 }
 
-/* How the sum over keys of a share's gradient compares with that of all blocks: least squares'
- * factor, over the biases that give the step sizes. */
+/* Ratio, by least squares, of a share's gradient to that of all blocks, summed over keys, for the
+ * biases that determine the step sizes. */
 static double factor(ted4_trainer *t, float d_value)
 {
     const ted4_shape *s = &t->layout.shape;
@@ -165,7 +166,7 @@ static double factor(ted4_trainer *t, float d_value)
     return product / square;
 }
 
-/* Both what the bits and what the picture say about step sizes. */
+/* For the gradients of the step sizes both from the bits and from the picture. */
 static void test_mean(void **state)
 {
     ted4_trainer t;

@@ -1,5 +1,5 @@
-/* test_resize.c - train/resize/resize.c and the candidates made with it: a model that loses what
- * it does not use draws the same pictures, and one that loses nothing is the same.
+/* test_resize.c - train/resize/resize.c and the candidates made with it: a model that loses only
+ * what it does not use renders the same pictures, and one that loses nothing is unchanged.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 
@@ -24,7 +24,7 @@ enum {
 
 static tiny_folder folder;
 static ted4_dataset scene;
-static ted4_snapshot begun; /* some steps into stage 2 */
+static ted4_snapshot begun; /* a few steps into stage 2 */
 static float shot[SHOTS][PIXELS];
 
 static int set_up(void **state)
@@ -63,8 +63,8 @@ static void go_there(ted4_trainer *t)
         fail_msg("%s", t->message.text);
 }
 
-/* Pictures of all times; the first call after keep = 1 is what later ones are held against. Largest
- * difference. */
+/* Renders pictures at all times. Returns the largest difference from those of the last call with
+ * keep = 1. */
 static double look(ted4_trainer *t, int keep)
 {
     double most = 0;
@@ -112,7 +112,8 @@ static void make(ted4_trainer *t, ted4_candidate m, int to)
     assert_int_equal(ted4_candidate_now(t, m), to);
 }
 
-/* Pictures as before, and a smaller file that says nearly the same in as many bits or fewer. */
+/* Asserts that pictures are the same up to tolerance, and that the file is smaller: nearly the same
+ * contents in as many bits or fewer. */
 static void expect_same(ted4_trainer *t, const ted4_cost *before, double tolerance)
 {
     const double away = look(t, 0);
@@ -122,10 +123,10 @@ static void expect_same(ted4_trainer *t, const ted4_cost *before, double toleran
         fail_msg("a picture changed by %g", away);
     if (!(after.bytes < before->bytes))
         fail_msg("%.0f bytes after %.0f", after.bytes, before->bytes);
-    ball_train(t, STEPS + 5); /* and it is a trainer that works */
+    ball_train(t, STEPS + 5); /* the trainer must still work */
 }
 
-/* The same of one move from where the trainer stands. */
+/* Asserts the same for one candidate, applied to the trainer's present state. */
 static void expect_free(ted4_trainer *t, ted4_candidate m, int to, double tolerance)
 {
     look(t, 1);
@@ -173,8 +174,8 @@ static void test_offset(void **state)
     ted4_trainer_finish(&t);
 }
 
-/* Two features that are nothing and that nobody changes; the second slice of features loses both,
- * the first none. */
+/* Two features are zero and no network writes to them; the second slice of features loses both, the
+ * first none. */
 static void test_feature(void **state)
 {
     ted4_trainer t;
@@ -207,7 +208,7 @@ static void test_feature(void **state)
     ted4_trainer_finish(&t);
 }
 
-/* Hidden units that are always off. */
+/* Hidden units whose output is always zero. */
 static void test_heads(void **state)
 {
     ted4_trainer t;
@@ -229,12 +230,12 @@ static void test_heads(void **state)
     const ted4_cost before = cost(&t);
 
     make(&t, TED4_CANDIDATE_HEADS, 8);
-    expect_same(&t, &before, 1e-4); /* what stays is estimated anew, by moments with a ridge */
+    expect_same(&t, &before, 1e-4); /* what remains is estimated anew, by moments with a ridge */
     ted4_trainer_finish(&t);
 }
 
-/* Two features of which one is always the other's double need no second unit: least squares find it
- * out, though both are read. */
+/* If one of two features is always twice the other, one unit for both suffices: least squares
+ * detect this, although both are read. */
 static void test_double(void **state)
 {
     ted4_trainer t;
@@ -273,7 +274,7 @@ static void test_view(void **state)
     ted4_trainer_finish(&t);
 }
 
-/* Three rows on a line are two. */
+/* Three collinear rows of the bank become two. */
 static void test_rows(void **state)
 {
     ted4_trainer t;
@@ -314,7 +315,7 @@ static void test_activation(void **state)
     ted4_trainer_finish(&t);
 }
 
-/* An F_deform that says nothing. */
+/* An F_deform whose output is always zero. */
 static void test_motion(void **state)
 {
     ted4_trainer t;
@@ -338,7 +339,7 @@ static void test_motion(void **state)
     ted4_trainer_finish(&t);
 }
 
-/* Other axes, the same pictures; the first components vary most. */
+/* The feature's axes are rotated, the pictures are the same; the first components vary most. */
 static void test_rotation(void **state)
 {
     ted4_train_options o = ball_options();
@@ -376,8 +377,8 @@ static void test_rotation(void **state)
     ted4_trainer_finish(&t);
 }
 
-/* Candidates that cannot be exact cost little when they are small: the cost without training stays
- * within a share of what it was. */
+/* Small candidates that cannot be exact cost little: without training, the cost stays within a
+ * given factor of the previous cost. */
 static void test_little(void **state)
 {
     static const struct {

@@ -1,5 +1,5 @@
-/* test_scatter.c - data/shown.h, data/sweep.h and data/scatter.h: what a plain background is;
- * points lie where pictures show something, and at the depth at which they agree; points that help
+/* test_scatter.c - data/shown.h, data/sweep.h and data/scatter.h: what counts as plain background;
+ * points are placed where pictures show something, at the depth at which they agree; useful points
  * stay.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
@@ -26,7 +26,7 @@ static int set_up_still(void **state)
     return 0;
 }
 
-/* Distance from the nearest surface of a ball, in radii. */
+/* Distance, in radii, from the surface of the nearest ball. */
 static double beside(const float *p)
 {
     double best = INFINITY;
@@ -50,7 +50,7 @@ static size_t count_near(const ted4_dataset *d, double most)
     return n;
 }
 
-/* A scene whose points are somebody else's: so many times as far from the middle as the balls. */
+/* Loads a scene with wrong points: they are times as far from the middle as the balls. */
 static void load(ted4_dataset *d, tiny_folder *f, double times)
 {
     ted4_message m;
@@ -105,7 +105,7 @@ static void test_shown(void **state)
     ted4_shown_free(&s);
 }
 
-/* The depth of a pixel that shows a ball is that of the ball's front. */
+/* The depth of a pixel that shows a ball is that of the ball's front side. */
 static void test_sweep(void **state)
 {
     ted4_message m;
@@ -139,8 +139,8 @@ static void test_sweep(void **state)
     ted4_shown_free(&s);
 }
 
-/* Points in space ten times as wide as the things: others take their place, the same ones
- * however many threads look for them. */
+/* If the points fill a space ten times as wide as the objects, other points replace them, the same
+ * for any number of threads. */
 static void test_useless(void **state)
 {
     ted4_dataset one, two;
@@ -167,7 +167,7 @@ static void test_useless(void **state)
     unload(&two, &f[1]);
 }
 
-/* Points on things are left alone. */
+/* Points on objects are kept. */
 static void test_useful(void **state)
 {
     ted4_dataset d;
@@ -186,7 +186,8 @@ static void test_useful(void **state)
     unload(&d, &f);
 }
 
-/* One picture cannot tell depths: a few points lie anywhere on the rays of what it shows. */
+/* One picture does not determine depths: a few points are placed at random depths on the rays of
+ * pixels that show something. */
 static void test_one_picture(void **state)
 {
     ted4_dataset d;
@@ -214,7 +215,7 @@ static void test_one_picture(void **state)
     unload(&d, &f);
 }
 
-/* Held-out pictures are not looked at: without their files it is the same. */
+/* Held-out pictures are not read: without their files the result is the same. */
 static void test_held_out(void **state)
 {
     ted4_dataset d, same;
@@ -234,8 +235,8 @@ static void test_held_out(void **state)
     unload(&same, &g);
 }
 
-/* All points lie inside the bounds, those that came with the scene and those in their place;
- * where there can be none, that is said. */
+/* All points lie inside the bounds, those of the scene and those that replace them; if no point can
+ * lie there, a message says so. */
 static void test_bounds(void **state)
 {
     const ball b = ball_at(0, 0);

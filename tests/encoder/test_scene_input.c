@@ -1,6 +1,6 @@
-/* test_scene_input.c - what the scenes of users bring: JPEGs that EXIF turns, JPEGs of four
- * colours, nerfstudio's own lists of the split, more times than wanted, pictures that change or go
- * away while they are in use, pictures that are damaged.
+/* test_scene_input.c - scenes as users supply them: JPEGs with an EXIF orientation, JPEGs with four
+ * components, nerfstudio's own lists of the split, more frames than requested, pictures that change
+ * or disappear while they are in use, damaged pictures.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdio.h>
 #include <jpeglib.h>
@@ -20,8 +20,8 @@ static void put(uint8_t *to, uint32_t v, int n, int little)
         to[little ? i : n - 1 - i] = (uint8_t)(v >> 8 * i);
 }
 
-/* The payload of an APP1 segment: a directory of two entries, the second of them the orientation.
- */
+/* The payload of an APP1 segment: a directory of two entries, of which the second is the
+ * orientation. */
 static void make_exif(uint8_t exif[EXIF_SIZE], uint32_t orientation, int little)
 {
     uint8_t *tiff = exif + 6, *entry = tiff + 10;
@@ -49,8 +49,7 @@ static void test_exif(void **state)
             assert_int_equal(ted4_exif_orientation(exif, sizeof exif), v >= 1 && v <= 8 ? v : 1);
         }
         make_exif(exif, 6, little);
-        for (size_t n = 0; n < sizeof exif;
-             n++) { /* cut anywhere: at its exact size, for sanitizers to watch */
+        for (size_t n = 0; n < sizeof exif; n++) { /* cut to n bytes, exactly, for sanitizers */
             uint8_t *cut = malloc(n + 1);
             assert_non_null(cut);
             memmove(cut, exif, n);
@@ -58,7 +57,7 @@ static void test_exif(void **state)
             assert_true(v == 1 || (v == 6 && n >= sizeof exif - 6));
             free(cut);
         }
-        put(exif + 10, 0xfffffff0, 4, little); /* a directory far away */
+        put(exif + 10, 0xfffffff0, 4, little); /* a directory beyond the end */
         assert_int_equal(ted4_exif_orientation(exif, sizeof exif), 1);
         make_exif(exif, 6, little);
         put(exif + 14, 0xffff, 2, little); /* more entries than bytes */
@@ -66,7 +65,8 @@ static void test_exif(void **state)
     }
 }
 
-/* Grey (1), RGB (3) or CMYK (4 components) with an EXIF orientation, 0: without EXIF. */
+/* Writes a JPEG: grey (1 component), RGB (3) or CMYK (4), with an EXIF orientation; 0: without
+ * EXIF. */
 static void write_jpeg(const tiny_folder *f, const char *name, int w, int h, int components,
                        uint32_t orientation)
 {
@@ -97,7 +97,7 @@ static void write_jpeg(const tiny_folder *f, const char *name, int w, int h, int
     fclose(out);
 }
 
-/* A scene of one picture a.jpg whose camera states a size. */
+/* Loads a scene of one picture a.jpg whose camera states a size. */
 static const char *load_jpeg(const tiny_folder *f, ted4_dataset *d, int w, int h)
 {
     tiny_string s = { "", 0 };
@@ -118,7 +118,7 @@ static void test_turned(void **state)
 
     (void)state;
     write_jpeg(&f, "a.jpg", TINY_W, TINY_H, 3, 6);
-    assert_string_equal(load_jpeg(&f, &d, TINY_W, TINY_H), ""); /* as stored: COLMAP's way */
+    assert_string_equal(load_jpeg(&f, &d, TINY_W, TINY_H), ""); /* as stored, like COLMAP */
     assert_int_equal(d.pictures[0].camera.width, TINY_W);
     assert_non_null(ted4_dataset_pixels(&d, 0, &m));
     ted4_dataset_release(&d, 0);
@@ -153,7 +153,7 @@ static void test_four_colours(void **state)
 
 /* ---- split and times ---- */
 
-/* transforms.json of pictures 0.png to 7.png, with what else is to stand in it. Picture i is of
+/* Writes transforms.json of pictures 0.png to 7.png, with additional members. Picture i has the
  * time i / 2. */
 enum { N = 8 };
 
@@ -174,8 +174,8 @@ static void write_scene(const tiny_folder *f, const char *more)
     tiny_text(f, "transforms.json", s.text);
 }
 
-/* The names of the training pictures, a bar, those of the test pictures; and the times: "02|1 f3".
- */
+/* The names of the training pictures, a bar, the names of the test pictures, and the times: "02|1
+ * f3". */
 static const char *summary(const tiny_folder *f, const ted4_dataset_options *o)
 {
     static char text[1200];
@@ -256,7 +256,7 @@ static void test_max_frames(void **state)
 
 /* ---- pictures that change ---- */
 
-/* Nothing stays in memory: every look at a picture reads its file. */
+/* Loads without a cache, so that every access to a picture reads its file. */
 static void load_uncached(ted4_dataset *d, const tiny_folder *f)
 {
     ted4_dataset_options o = tiny_options;
@@ -286,7 +286,7 @@ static void test_changed(void **state)
     write_scene(&f, "");
     load_uncached(&d, &f);
     tiny_picture(&f, "1.png", TINY_W, TINY_H, 99);
-    expect_pixels(&d, 1, ""); /* not read before: nobody can tell */
+    expect_pixels(&d, 1, ""); /* not read before, so the change is not detected */
     assert_int_equal(ted4_dataset_verify(&d, NULL, &m), 0);
     tiny_picture(&f, "2.png", TINY_W, TINY_H, 21);
     expect_pixels(&d, 2, "2.png: the file has changed since it was read first");
@@ -295,12 +295,12 @@ static void test_changed(void **state)
     must(remove(tiny_path(&f, "2.png")) == 0, "2.png");
     expect_pixels(&d, 2, "2.png: No such file");
     tiny_picture(&f, "2.png", TINY_W, TINY_H, 20);
-    expect_pixels(&d, 2, ""); /* as it was */
+    expect_pixels(&d, 2, ""); /* restored */
     ted4_dataset_free(&d);
     tiny_free(&f);
 }
 
-/* Of several bad pictures the first is named, whatever the threads. */
+/* If several pictures are damaged, the first is named, for any number of threads. */
 static void test_verify(void **state)
 {
     static const char *const names[] = { "3.png", "5.png", "7.png" };
@@ -353,11 +353,11 @@ static void test_digest(void **state)
     write_scene(&b, "");
     const uint64_t plain = digest(&a, 1, 0), whole = digest(&a, 1, 1);
     assert_int_not_equal(plain, whole);
-    assert_int_equal(digest(&b, 1, 0), plain); /* another place */
+    assert_int_equal(digest(&b, 1, 0), plain); /* another folder */
     assert_int_equal(digest(&b, 1, 1), whole);
     assert_int_not_equal(digest(&b, 2, 1), whole);
     tiny_picture(&b, "3.png", TINY_W, TINY_H, 31);
-    assert_int_equal(digest(&b, 1, 0), plain); /* nobody has looked at the pixels */
+    assert_int_equal(digest(&b, 1, 0), plain); /* pixels are not compared */
     assert_int_not_equal(digest(&b, 1, 1), whole);
     write_scene(&b, "\"fl_y\": 10,");
     assert_int_not_equal(digest(&b, 1, 0), plain);

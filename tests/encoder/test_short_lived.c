@@ -1,5 +1,5 @@
-/* test_short_lived.c - train/densify/short_lived.c: which initial points are found to exist only
- * for a while, and when.
+/* test_short_lived.c - train/densify/short_lived.h: which initial points are found to be
+ * short-lived, and when they exist.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdlib.h>
 #include <string.h>
@@ -41,7 +41,7 @@ static void close_scene(scene *s)
     tiny_free(&s->folder);
 }
 
-/* Distance of anchor i from the middle of a ball at a time, in radii. */
+/* Distance, in radii, of anchor i from the centre of a ball at a time. */
 static double radii(const ted4_trainer *t, size_t i, int which, double time)
 {
     const ted4_header *h = &t->layout.head;
@@ -63,8 +63,8 @@ static float tau(const ted4_trainer *t, size_t i, int c)
     return *ted4_anchor_value(&t->anchors, TED4_ROW_VALUE, i, t->layout.first[TED4_TAU] + c);
 }
 
-/* The blue ball's points get spans around the time at which it was there; the green ball, far from
- * its way, gets none. */
+/* The blue ball's points get spans around the times at which the ball was there; those of the green
+ * ball, far from its path, get none. */
 static void test_moving(void **state)
 {
     scene s;

@@ -1,5 +1,5 @@
-/* test_stage1.c - one end of stage 1 serves every lambda and every variant of stage 2: what comes
- * out is what a training of its own would have given.
+/* test_stage1.c - one state from the end of stage 1 serves every lambda and every variant of stage
+ * 2: the result equals that of a complete training.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "test.h"
 #include "ball_trainer.h"
@@ -78,7 +78,7 @@ static void test_variants(void **state)
     free(base.bytes);
 }
 
-/* Options of stage 1 must be the same, and a state of stage 2 belongs to one lambda. */
+/* Options of stage 1 must be the same, and a state from stage 2 belongs to one lambda. */
 static void test_refused(void **state)
 {
     static const char *const bad[] = { "motion=2", "view=0", "temporal_weight=0.1", "stage1=401" };

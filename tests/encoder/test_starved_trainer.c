@@ -1,5 +1,5 @@
-/* test_starved_trainer.c - the trainer when memory runs out: each allocation in turn fails. It says
- * so, says nothing else, and gives back what it holds.
+/* test_starved_trainer.c - the trainer when memory runs out, with each allocation failing in turn:
+ * it reports exactly that, and releases what it holds.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdlib.h>
 
@@ -43,7 +43,7 @@ static uint8_t *decode(void *user, size_t i, size_t *size, ted4_message *m)
     return __real_calloc(*size, 1);
 }
 
-/* A cache that keeps nothing holds what is in use. */
+/* A cache without room holds only pictures that are in use. */
 static int preview(size_t n, int fail_on)
 {
     begin();

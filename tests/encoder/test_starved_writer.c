@@ -1,6 +1,6 @@
-/* test_starved_writer.c - the writer when memory runs out: each allocation in turn fails, and the
- * verdict is limit.memory. It is compiled here as where size_t has 32 bits: no size is more than
- * UINT32_MAX there.
+/* test_starved_writer.c - the writer when memory runs out, with each allocation failing in turn:
+ * the verdict is limit.memory. It is compiled here as if size_t had 32 bits: no size exceeds
+ * UINT32_MAX.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdlib.h>
 

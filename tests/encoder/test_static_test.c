@@ -1,12 +1,12 @@
-/* test_static_test.c - train/search/static_test.c: time is kept where things move and dropped where
- * nothing does, and trying it leaves no trace in what is kept.
+/* test_static_test.c - train/search/static_test.c: time is kept if something moves and dropped if
+ * nothing does, and the branch that is kept shows no effect of the test.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "test.h"
 #include "ball_trainer.h"
 #include "train/monitor/checkpoint.h"
 #include "train/train.h"
 
-/* A branch of 200 steps, from a quarter of stage 1 on. */
+/* Each branch takes 200 steps, from a quarter of stage 1 on. */
 enum { STAGE1 = 2000, BEGIN = STAGE1 / 4, BRANCH = 200, FRAMES = 5 };
 
 static ted4_train_options options(const char *probe)
@@ -18,7 +18,7 @@ static ted4_train_options options(const char *probe)
     return o;
 }
 
-/* A trainer just after the probe. */
+/* Trains until just after the probe. */
 static void train(ted4_trainer *t, ted4_dataset *d, const char *probe)
 {
     const ted4_train_options o = options(probe);
@@ -59,7 +59,7 @@ static void test_moving(void **state)
     assert_int_equal(a.layout.head.motion, TED4_MOTION_BANK);
     assert_int_equal(a.layout.head.activation, 1);
 
-    /* The branch that was kept is the training that would have been without a probe. */
+    /* The branch that was kept equals the training without a probe. */
     assert_int_equal(a.iteration, b.iteration);
     assert_int_equal(a.anchors.n, b.anchors.n);
     check_same(&a, &b);
@@ -69,8 +69,8 @@ static void test_moving(void **state)
     tiny_free(&folder);
 }
 
-/* Either part of time is stopped with the clock: where only one of them is modelled, it is missed.
- */
+/* The branch without time stops the clock for motion and for activation: if only one of them is
+ * modelled, it is missed too. */
 static void test_parts(void **state)
 {
     static const char *const without[] = { "activation=0", "motion=0" };
@@ -86,7 +86,7 @@ static void test_parts(void **state)
         ball_set(&o, without[i]);
         ball_begin(&t, &o, &d, NULL);
         ball_train(&t, BEGIN + BRANCH + 1);
-        /* The rule; a fifth is usual. */
+        /* The program's rule; usually it is a fifth. */
         if (!(t.search.probe_loss[0] > 0 && t.search.probe_loss[0] < 0.99 * t.search.probe_loss[1]))
             fail_msg("%s: %g with time, %g without", without[i], t.search.probe_loss[0],
                      t.search.probe_loss[1]);
@@ -98,9 +98,9 @@ static void test_parts(void **state)
     tiny_free(&folder);
 }
 
-/* What moves may not learn, so that neither branch can be much better than the other. Learning from
- * a still scene, the branch with time may be lucky: one seed in eight has a loss that is 2 % lower
- * with it. */
+/* The parameters of motion do not learn, so neither branch can be much better than the other. If
+ * they learn from a static scene, the branch with time may win by chance: with one seed in eight
+ * its loss is 2 % lower. */
 static void test_still(void **state)
 {
     tiny_folder folder;
@@ -128,8 +128,8 @@ static void test_still(void **state)
     assert_int_equal(ted4_snapshot_take(&t, &early), 0);
     ball_train(&t, BEGIN + BRANCH + 1);
 
-    /* A run that was killed after it had begun again goes on without time, and does not ask once
-     * more. */
+    /* A run that was killed after it had started again continues without time, and does not repeat
+     * the test. */
     ball_begin(&twin, &o, &d, NULL);
     if (ted4_snapshot_restore(&twin, &early) != 0)
         fail_msg("%s", twin.message.text);
@@ -140,7 +140,7 @@ static void test_still(void **state)
     ted4_trainer_finish(&twin);
     ted4_snapshot_free(&early);
 
-    /* What follows is the training of an encoder that knows no time. */
+    /* What follows equals the training of an encoder without time. */
     ball_set(&o, "motion=0");
     ball_set(&o, "activation=0");
     ball_begin(&twin, &o, &d, NULL);
@@ -152,7 +152,7 @@ static void test_still(void **state)
     tiny_free(&folder);
 }
 
-/* Too few steps tell nothing. */
+/* With too few steps, nothing is tested. */
 static void test_short(void **state)
 {
     tiny_folder folder;

@@ -1,8 +1,8 @@
-/* test_step_grad.c - the gradient of a whole training step, chained as train/step/step.c does
- * it: distortion of rasteriser of generation and, in stage 2, of the quantiser, plus the rate. Its
- * products with random directions, in each part of the model and in all at once, against central
- * differences of double-precision references. Quantisation residuals are held fixed, masks are
- * straight-through.
+/* test_step_grad.c - the gradient of a whole training step, composed as in train/step/step.c: the
+ * distortion as a function of the rasteriser, the generator and, in stage 2, the quantiser, plus
+ * the rate. Its products with random directions, in each part of the model and in all at once, are
+ * compared with central differences of double-precision references. Quantisation residuals are held
+ * fixed; masks are straight-through.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "test.h"
 #include "generate_ref.h"
@@ -27,14 +27,16 @@ enum {
 };
 
 #define SSIM_WEIGHT 0.3f
-/* Step of the difference, and how far its two halves may disagree: a jump shows as jump / STEP. */
+/* Step of the difference, and the largest relative disagreement of its two halves: a jump appears
+ * as jump / STEP. */
 #define STEP        1e-7
 #define JUMP_SHARE  1e-3
-/* Float gradients against double differences, relative to the size of the terms of the product. */
+/* Tolerance between float gradients and double differences, relative to the size of the terms of
+ * the product. */
 #define TOLERANCE   1e-4
 
-/* All parameters are one array: the networks, then blocks of channels as train/model/model.h has
- * them. */
+/* All parameters are in one array: the networks, followed by blocks of channels in the order of
+ * train/model/model.h. */
 typedef struct {
     ted4_layout layout;
     ted4_view view;
@@ -155,7 +157,7 @@ static void make(uint32_t seed, uint32_t num, int activation, int stage2)
         pr.block[i] = 11u + 7u * (uint32_t)i;
     for (size_t i = 0; i < pr.layout.n_net; i++)
         pr.net[i] = (float)((i < pr.layout.nete ? 0.7 : 0.4) * ref_uniform());
-    /* Biases of the opacity head: enough Gaussians to see. */
+    /* Biases of the opacity head for which enough Gaussians are visible. */
     for (size_t i = 1; i <= OFFSETS; i++)
         pr.net[pr.layout.shape.netr[TED4_NET_COVARIANCE].first - i] = 0.5f;
     for (int i = 0; i < N_BLOCKS; i++)
@@ -197,7 +199,7 @@ static ted4_rate_input rate_input(const lists *l)
                                pr.bit_weight, 1.0f,     1 };
 }
 
-/* Values as rendered, and what was added to them in units of their steps. */
+/* Computes the values as rendered, and the residuals in units of their steps. */
 static void quantise(ted4_rate *rate, const lists *l)
 {
     const ted4_rate_input in = rate_input(l);
@@ -218,7 +220,7 @@ static void quantise(ted4_rate *rate, const lists *l)
     }
 }
 
-/* d_image is there; d_attr and d_net become the gradient of the distortion. */
+/* Takes d_image; fills d_attr and d_net with the gradient of the distortion. */
 static void distortion_backward(ted4_raster *raster, ted4_generator *g,
                                 const ted4_generate_input *in, const ted4_splats *s,
                                 float *const *d_attr)
@@ -241,7 +243,7 @@ static void distortion_backward(ted4_raster *raster, ted4_generator *g,
     assert_int_equal(ted4_generate_backward(g, in, &gr, NULL, d_attr, pr.d_net), 0);
 }
 
-/* Fills the gradient, residuals, image; returns the loss. */
+/* Fills the gradient, residuals and image; returns the loss. */
 static double analytic(void)
 {
     const lists l = make_lists();
@@ -292,7 +294,7 @@ static double analytic(void)
 
 /* ---- the reference ---- */
 
-/* Bits with straight-through masks. Leaves the steps in *r. */
+/* Bits with straight-through masks. Stores the steps in *r. */
 static double reference_bits(const double *theta, int visible, int j, ref_result *r)
 {
     const ted4_layout *l = &pr.layout;
@@ -309,7 +311,7 @@ static double reference_bits(const double *theta, int visible, int j, ref_result
     for (int c = l->offset_logit; c < l->n_channels; c++)
         a.logit[c - l->offset_logit] = pr.theta[l->n_net + channel_at(visible, c, j)];
     ref_evaluate(&m, &a, NULL, r);
-    for (unsigned i = 0; i < l->shape.n_outputs; i++) { /* nothing is near a clamp */
+    for (unsigned i = 0; i < l->shape.n_outputs; i++) { /* no output is near a limit */
         assert_true(r->raw[i] > -3.9);
         assert_true(r->raw[i] < 3.9);
     }
@@ -325,7 +327,7 @@ static double reference_bits(const double *theta, int visible, int j, ref_result
     return bits;
 }
 
-/* Channels as the generator gets them. */
+/* The channels as the generator receives them. */
 static void reference_values(const double *theta, const ref_result *r, int visible, int j,
                              double *x)
 {
@@ -411,9 +413,9 @@ static size_t list_parts(part *p)
     return n;
 }
 
-/* A random direction within a part, of the length that makes its terms of the product 1 in size.
- * 0: the part has no gradient (tau, where all anchors are on their plateau); the direction is then
- * so long that any would show. */
+/* Makes a random direction within a part, scaled so that the root of the sum of squares of its
+ * terms of the product is 1. Returns 0 if the part has no gradient (tau, where all anchors are on
+ * their plateau); the direction is then so long that any gradient would show. */
 static int make_direction(const part *p, uint64_t key, double *own)
 {
     double size = 0;
@@ -443,7 +445,7 @@ static double moved(const double *direction, double step)
     return reference(pr.moved);
 }
 
-/* Directions that were looked at, and those on which nothing jumps. */
+/* Directions that were tested, and those of them without a jump. */
 static int n_directions, n_smooth;
 
 /* size: of the terms of the product. */
@@ -489,7 +491,7 @@ static void check_all(void)
 
 /* ---- tests ---- */
 
-/* The double renderer against the project's own. */
+/* Compares the double-precision renderer with the project's own. */
 static void test_renderer(void **state)
 {
     static float rounded[REF_SPLAT][SPLATS];
