@@ -1,7 +1,7 @@
-/* test_terms.c - what a training step optimises (paper, "Training Objectives"): each term of the
- * loss, made heavier in a training from pictures, moves what it is about; the prior and its step
- * sizes are learnt; and every part of the model moves when it is its turn, and only then. What each
- * is worth: test_update.c, test_rate_subset.c, test_step_grad.c.
+/* test_terms.c - the objectives of a training step (paper, "Training Objectives"): a larger weight
+ * of any term of the loss, in a training from pictures, reduces the quantity that the term
+ * penalises; the prior and its step sizes are learnt; and every part of the model is trained in its
+ * phases and only then. Values of the terms: test_update.c, test_rate_subset.c, test_step_grad.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "test.h"
 #include "ball_group.h"
@@ -20,7 +20,7 @@ static ted4_train_options options(const char *changed)
     return o;
 }
 
-/* ---- what terms are about ---- */
+/* ---- quantities that terms penalise ---- */
 
 static double mean_of(const ted4_trainer *t, int first, int n)
 {
@@ -32,7 +32,7 @@ static double mean_of(const ted4_trainer *t, int first, int n)
     return sum / ((double)t->anchors.n * n);
 }
 
-/* log2 of the sizes of Gaussians, before their heads. */
+/* Mean log2 of the sizes of Gaussians, before the heads modify them. */
 static double log_size(const ted4_trainer *t)
 {
     return mean_of(t, t->layout.first[TED4_SCALING] + 3, 3);
@@ -60,13 +60,13 @@ static double pull_to_keep(const ted4_trainer *t)
     return mean_of(t, t->layout.offset_logit, t->layout.head.n_offsets);
 }
 
-/* In natural logarithm, as it falls by orders of magnitude while a training gets on. */
+/* ln(1 - SSIM): the logarithm, because this falls by orders of magnitude as training proceeds. */
 static double unlike(const ted4_trainer *t)
 {
     return log(1 - t->progress.ssim);
 }
 
-/* An anchor's bits, as the file will have them. */
+/* Bits per anchor, as in the file. */
 static double bits(const ted4_trainer *t)
 {
     double estimate[TED4_TYPES], sum = 0;
@@ -77,7 +77,7 @@ static double bits(const ted4_trainer *t)
     return sum / (double)t->anchors.n;
 }
 
-/* Less the mean distance of log2 of the features' steps from that of Q0. */
+/* The negative mean distance between log2 of the features' steps and log2 of Q0. */
 static double sameness(const ted4_trainer *t)
 {
     const double q0 = (double)t->layout.head.step[TED4_FEATURE];
@@ -89,13 +89,13 @@ static double sameness(const ted4_trainer *t)
     return sum / (double)t->anchors.n;
 }
 
-/* No option that both have. */
+/* No common option: a value that options() sets anyway. */
 #define NONE "slices=2"
 
 typedef struct {
     const char *light, *heavy, *both;
-    double (*what)(const ted4_trainer *t); /* less of it is wanted */
-    double least;                          /* by which the heavy one must be less */
+    double (*what)(const ted4_trainer *t); /* to be reduced */
+    double least;                          /* smallest reduction from light to heavy */
 } term;
 
 static double trained(const term *x, int heavy, const ted4_snapshot *from)
@@ -130,7 +130,8 @@ static void test_stage1(void **state)
         { "volume_weight=0", "volume_weight=100", "lr_heads=0", log_size, 0.05 },
         { "tv_weight=0", "tv_weight=100", NONE, roughness, 0.05 },
         { "temporal_weight=0", "temporal_weight=1", NONE, pull_to_move, 0.5 },
-        /* 0.25 and more over seeds; nothing is sure after 150 steps. */
+        /* At least 0.25 for all seeds tried; after 150 steps the difference would not be
+         * reliable. */
         { "ssim=0", "ssim=1", "stage1=800", unlike, 0.05 },
     };
 
@@ -159,10 +160,10 @@ static void test_stage2(void **state)
     ted4_snapshot_free(&from);
 }
 
-/* ---- whose turn it is ---- */
+/* ---- which parts are trained when ---- */
 
-/* Parts of the model, a bit each: the five networks, bank, prior; the five types of values, masks
- * of offsets, of motion. */
+/* Parts of the model, one bit each: the five networks, bank, prior; the five types of values, masks
+ * of offsets, masks of motion. */
 enum {
     NETS = 1 << TED4_NETS_R,
     BANK = NETS,
@@ -190,7 +191,7 @@ static int channels_differ(const ted4_trainer *t, const float *before, int first
     return 0;
 }
 
-/* Parts that some steps move. */
+/* Trains some steps. Returns the parts that they change. */
 static int moved(ted4_trainer *t)
 {
     const ted4_layout *l = &t->layout;
@@ -223,7 +224,7 @@ static int moved(ted4_trainer *t)
     return parts;
 }
 
-/* Between adjustments of anchors: in the static phase, with activation, with the rate, and with the
+/* Phases between adjustments of anchors: static, with activation, with the rate, and with the
  * integer model. */
 static void test_turns(void **state)
 {

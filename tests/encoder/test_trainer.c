@@ -1,6 +1,6 @@
-/* test_trainer.c - training of a tiny scene from pictures to bytes: it learns, any number of
- * threads and any checkpoint give the same file, parts that a scene does not need are left out,
- * the rate it optimises is the rate of the file, and damage is refused with a message.
+/* test_trainer.c - training of a tiny scene from pictures to bytes: it learns; any number of
+ * threads and any checkpoint give the same file; parts that a scene does not need are removed; the
+ * optimised rate is the rate of the file; and damaged checkpoints are refused with a message.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <errno.h>
 
@@ -68,7 +68,7 @@ static void test_learns(void **state)
     free(f.bytes);
 }
 
-/* ---- same bytes ---- */
+/* ---- identical bytes ---- */
 
 static ball_file run(const ted4_parallel *p)
 {
@@ -102,8 +102,8 @@ static void test_threads(void **state)
 
 /* ---- checkpoints ---- */
 
-/* In stage 1 without and with activation; before and after the first step of stage 2; before and in
- * the integer stage; at the end. */
+/* In stage 1, without and with activation; before and after the first step of stage 2; before and
+ * in the integer stage; at the end. */
 static const uint64_t stops[] = {
     0, 90, 230, STAGE1, STAGE1 + 1, INTEGER_FROM, INTEGER_FROM + 7, STAGE1 + STAGE2
 };
@@ -159,7 +159,7 @@ static void test_checkpoints(void **state)
     free(plain.bytes);
 }
 
-/* Into a fresh trainer; the message must name the file. */
+/* Asserts that a fresh trainer refuses the checkpoint, with a message that names the file. */
 static void check_refused(const ted4_train_options *o, ted4_dataset *d, const char *path)
 {
     ted4_trainer t;
@@ -182,8 +182,8 @@ static ball_file read_file(const char *path)
     return f;
 }
 
-/* Every byte of the front, where the header is, and some of the rest; then truncations and a byte
- * too many. */
+/* Damages every byte of the front, which contains the header, and some of the rest; then truncates,
+ * and appends a byte. */
 static void check_damaged(const char *from)
 {
     const ted4_train_options o = ball_options();
@@ -235,8 +235,8 @@ static void test_bad_checkpoints(void **state)
     check_refused(&o, &moving_scene, stop_path(1));
 }
 
-/* A state that no checkpoint may hold is not written, and the last good checkpoint stays, though no
- * call of the system failed. */
+/* A state that no checkpoint may contain is not written, and the last good checkpoint remains,
+ * although no system call failed. */
 static void test_impossible_state(void **state)
 {
     const ted4_train_options o = ball_options();
@@ -288,8 +288,8 @@ static void test_single_frame(void **state)
     assert_true(psnr > 33);
 }
 
-/* In a short run the pull towards a static scene is too weak to be heard: the file is larger than
- * it need be, and valid. */
+/* In a short run the temporal regulariser is too weak to remove motion: the file is larger than
+ * necessary, but valid. */
 static void test_still(void **state)
 {
     const ted4_train_options o = ball_options();
@@ -301,8 +301,8 @@ static void test_still(void **state)
     assert_true(psnr > 33);
 }
 
-/* With a longer stage 1 and a strong pull, all masks are off when stage 2 begins, and bank and
- * motion leave the model; then checkpoints of the smaller model work, too. */
+/* With a longer stage 1 and a strong regulariser, all masks are off when stage 2 begins, and bank
+ * and motion are removed from the model; checkpoints of the smaller model work too. */
 static void test_simplified(void **state)
 {
     ted4_train_options o = ball_options();
@@ -336,7 +336,8 @@ static void test_simplified(void **state)
 
 /* ---- rate ---- */
 
-/* Bits of all anchors as the trainer counts them at the end, against the substreams of the file. */
+/* Compares the bits of all anchors, as the trainer counts them at the end, with the substreams of
+ * the file. */
 static void test_rate(void **state)
 {
     const ted4_train_options o = ball_options();
@@ -381,9 +382,9 @@ static void test_rate(void **state)
     assert_true(fabs(sum - want) < 0.01 * want);
 }
 
-/* ---- not a number ---- */
+/* ---- values that are not finite ---- */
 
-/* A NaN, or an infinity, in a network is never written; the next step finds it, says where, and
+/* A NaN or an infinity in a network is never written; the next step detects it, says where, and
  * goes back (test_monitor.c). */
 static void check_nan(uint64_t iteration, int which)
 {
@@ -426,8 +427,8 @@ static void test_nan(void **state)
     check_nan(INTEGER_FROM + 5, TED4_NETS_R + 1);
 }
 
-/* A value of an anchor is found by the first step whose picture may show the anchor, or when all
- * anchors are next looked at, at most 100 steps later. */
+/* A bad value of an anchor is detected by the first step whose picture may show the anchor, or by
+ * the next check of all anchors, at most 100 steps later. */
 static void test_nan_anchor(void **state)
 {
     const ted4_train_options o = ball_options();

@@ -1,6 +1,6 @@
-/* test_transforms.c - transforms files as other programs write them: intrinsics in each frame and
- * of several forms, names of pictures in any form, one file or another missing, times of their own,
- * and what the layout is called.
+/* test_transforms.c - transforms files as other programs write them: intrinsics per frame and in
+ * several forms, names of pictures in any form, missing files, times that do not follow the frames,
+ * and how the layout is named.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 
@@ -60,7 +60,7 @@ static void check_lenses(const tiny_folder *f, const char *top, const lens_case 
     ted4_dataset_free(&d);
 }
 
-/* Pictures of different sizes, with lenses of their own. */
+/* Pictures of different sizes, each with its own lens. */
 static void test_lenses(void **state)
 {
     const double third = 8 / tan(0.5), half = 10 / tan(0.25);
@@ -75,8 +75,8 @@ static void test_lenses(void **state)
         { ", \"camera_angle_x\": 1", 16, 10, third, third, 8, 5 },
         { ", \"camera_angle_x\": 0.5, \"cx\": 9", 20, 10, half, half, 9, 5 },
     };
-    /* A frame's own matrix goes before all that the top says of focal length and centre; a single
-     * field of a frame before that field. */
+    /* A frame's own matrix overrides all top-level fields for focal length and centre; a single
+     * field of a frame overrides that field. */
     const lens_case above[] = {
         { ", \"K\": [[22, 0, 6], [0, 23, 4], [0, 0, 1]]", 16, 12, 22, 23, 6, 4 },
         { ", \"camera_angle_x\": 1", 16, 12, third, third, 7, 6 },
@@ -91,7 +91,7 @@ static void test_lenses(void **state)
     tiny_free(&f);
 }
 
-/* Every way to name a picture, and the one that is meant. */
+/* Every way to name a picture, and the file that is meant. */
 static void test_names(void **state)
 {
     static const struct {
@@ -145,7 +145,7 @@ static void test_names(void **state)
     tiny_free(&f);
 }
 
-/* Ten frames; time of frame i: from + i * step; step < 0: none. */
+/* Writes ten frames. Time of frame i: from + i * step; step < 0: no times. */
 static void write_part(const tiny_folder *f, const char *file, const char *part, const char *top,
                        double from, double step)
 {
@@ -176,7 +176,7 @@ static size_t tests_of(const ted4_dataset *d)
     return n;
 }
 
-/* pictures, test pictures, layout */
+/* n: pictures; n_test: test pictures; layout: its name in the dataset. */
 static void expect(const tiny_folder *f, size_t n, size_t n_test, const char *layout)
 {
     ted4_dataset d = load(f);
@@ -203,7 +203,7 @@ static void test_files(void **state)
     write_part(&f, "transforms_train.json", "train", ANGLE, 0, 0.1);
     write_part(&f, "transforms_val.json", "val", ANGLE, 0, 0.1);
     write_part(&f, "transforms_test.json", "test", ANGLE, 0, 0.1);
-    expect(&f, 20, 10, "D-NeRF"); /* val is nobody's */
+    expect(&f, 20, 10, "D-NeRF"); /* val belongs to neither split */
     write_part(&f, "transforms_train.json", "train", "\"fl_x\": 12,", 0, 0.1);
     expect(&f, 20, 10, "D-NeRF");
     write_part(&f, "transforms_train.json", "train", "\"fl_x\": 12,", 0, -1);
@@ -221,7 +221,7 @@ static void test_files(void **state)
     tiny_free(&f);
 }
 
-/* Test times lie between training times, on a common step or on none. */
+/* Test times lie between training times, with or without a common step. */
 static void test_times(void **state)
 {
     tiny_folder f = tiny_new();

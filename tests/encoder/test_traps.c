@@ -1,15 +1,18 @@
-/* test_traps.c - the places where the published recipe fails (annex D.1, in its order, and two
- * more), each with what we do instead. Those that the test of one module shows are there:
- *   3 sigma clamped from below gets no gradient: test_rate.c, clamped outputs recover;
- *   test_rate_grad.c, clamped 4 a floor under likelihoods leaves outliers without gradient:
- *   test_rate_row.c, outliers have gradient; test_rate_grad.c, outliers 5 steps that reach 0:
- *   test_rate.c, clamped outputs recover; the symbols that would overflow: test_rate.c, quantise;
- *   and here 7 the cap of opacity and the early stop are steps: test_raster_grad.c, cap and early
- *   stop; so pictures are compared with a tolerance, test_raster.c,
- *     and what has to be equal to the bit ends at the Gaussians, test_recon.c
- * Here: 1 spans that begin with the sequence, 2 the saddle of the bank's query, 5 symbols of a
- * file, 6 units of the world and small scalings, 8 anchors that are never there; and positions in
- * FP16: none beyond 1, no two alike.
+/* test_traps.c - the points where the published recipe fails, each with our remedy: the traps of
+ * annex D.1 in its order (1 to 6, and positions in FP16), and two more (7 and 8). Those that belong
+ * to one module are tested there:
+ * - 3, sigma clamped from below gets no gradient: test_rate.c, clamped outputs recover;
+ * test_rate_grad.c, clamped;
+ * - 4, a floor under likelihoods leaves outliers without gradient: test_rate_row.c, outliers have
+ * gradient; test_rate_grad.c, outliers;
+ * - 5, steps that reach 0: test_rate.c, clamped outputs recover; the symbols that would overflow:
+ * test_rate.c, quantise, and below;
+ * - 7, the cap of opacity and the early stop are discontinuous: test_raster_grad.c, cap and early
+ * stop. Therefore pictures are compared with a tolerance (test_raster.c), and bit-exactness ends at
+ * the Gaussians (test_recon.c).
+ * Tested here: 1 spans that begin with the sequence, 2 the saddle point of the bank's query, 5
+ * symbols of a file, 6 units of the world and small scalings, 8 anchors that are never present; and
+ * positions in FP16: none beyond 1, no two equal.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "test.h"
 #include "ball_group.h"
@@ -25,9 +28,9 @@
 
 static cloud_case cloud;
 
-/* ---- 1: a span that begins at the first time of all, or ends at the last ---- */
+/* ---- 1: a span that begins at the first frame or ends at the last ---- */
 
-/* Gradients of the sum of all opacities at a frame, in t->visible blocks.gradient. */
+/* Computes the gradients of the sum of all opacities at a frame, in t->visible_blocks.gradient. */
 static void opacity_gradients(ted4_trainer *t, uint32_t frame)
 {
     ted4_generate_input in = { &t->layout, t->net.value, 0,          NULL,  NULL,
@@ -69,7 +72,7 @@ static void opacity_gradients(ted4_trainer *t, uint32_t frame)
     free(seen);
 }
 
-/* How many anchors have a gradient on component c of tau. */
+/* Number of anchors with a gradient on component c of tau. */
 static size_t pulled(const ted4_trainer *t, int c)
 {
     size_t n = 0;
@@ -84,8 +87,8 @@ static size_t pulled(const ted4_trainer *t, int c)
     return n;
 }
 
-/* Everything is seen at every time, so all spans reach from the first frame to the last. With a_s
- * at the first frame itself no frame would lie before it, and it could never move. */
+/* Everything is visible at all times, so all spans reach from the first frame to the last. If a_s
+ * were at the first frame itself, no frame would lie before it, and it could never move. */
 static void test_spans(void **state)
 {
     const ted4_train_options o = ball_options();
@@ -94,7 +97,7 @@ static void test_spans(void **state)
     (void)state;
     ball_begin(&t, &o, &balls, NULL);
     ball_train(&t, 40);
-    /* None is hidden at any time. */
+    /* No anchor is transparent at any time. */
     ball_set_biases(&t, TED4_NET_OPACITY, t.layout.head.n_offsets, 10.0f);
     assert_int_equal(ted4_activation_begin(&t), 0);
     for (int end = 0; end < 2; end++) {
@@ -122,8 +125,8 @@ static size_t first_layer(const ted4_net_shape *s)
     return (size_t)s->dim[0] * s->dim[1];
 }
 
-/* The last layer of F_deform begins at zero, so that the first step reaches it alone; with the
- * second all that moves anchors must have begun to learn. */
+/* The last layer of F_deform is initialised to zero, so the first step changes only this layer; in
+ * the second step, everything that moves anchors must have a gradient. */
 static void test_saddle(void **state)
 {
     ted4_train_options o = ball_options();
@@ -132,7 +135,7 @@ static void test_saddle(void **state)
     double on_phi = 0;
 
     (void)state;
-    o.tv_weight = 0; /* or the bank would have a gradient of its own */
+    o.tv_weight = 0; /* else the bank has a gradient of its own */
     ball_begin(&t, &o, &balls, NULL);
     ball_train(&t, 2);
     assert_int_equal(t.layout.head.phi_dim, 4);
@@ -153,8 +156,8 @@ static void test_saddle(void **state)
 
 /* ---- 5: symbols beyond 16 bits ---- */
 
-/* Opacity does not read the first feature: what it made of a runaway one would hide all anchors of
- * one sign, or of both. */
+/* Makes opacity ignore the first feature: otherwise huge values of it would hide all anchors of one
+ * sign, or of both. */
 static void blind_opacity(ted4_trainer *t)
 {
     const ted4_net_shape *s = &t->layout.shape.netr[TED4_NET_OPACITY];
@@ -163,7 +166,8 @@ static void blind_opacity(ted4_trainer *t)
         t->net.value[t->layout.netr + s->first + o * s->dim[0]] = 0.0f;
 }
 
-/* Runaway values come out as the largest symbols, with their sign, in a file that decodes. */
+/* Values that are far too large become the largest symbols, with their sign, in a file that
+ * decodes. */
 static void test_symbols(void **state)
 {
     ted4_train_options o = ball_options();
@@ -202,7 +206,7 @@ static void test_symbols(void **state)
 
 /* ---- 6: scalings in the units of the world ---- */
 
-/* The same scene in units 4096 times as large: the same anchors to the bit. */
+/* The same scene in units 4096 times as large gives bit-identical anchors. */
 static void test_units(void **state)
 {
     ted4_trainer metre, league;
@@ -229,15 +233,14 @@ static void test_units(void **state)
     ted4_trainer_finish(&league);
 }
 
-/* log2 of component c of all scalings: far below the linear step, as scenes in small units have
- * them. */
+/* log2 of component c of all scalings: far below the linear step, as in scenes with small units. */
 static float small_scaling(unsigned c)
 {
     return -17.0f - 0.37f * (float)c;
 }
 
-/* How many scalings of the file are within half a step of what they were, and that step is less
- * than a seventh of them; in linear units: above 0. */
+/* Number of scalings in the file whose error is at most half a step, with a step of less than 0.2
+ * in log2 (a seventh of the scaling); in linear units: number of those above 0. */
 static size_t count_right(const ted4_scene *s, int linear)
 {
     const size_t n = s->head.n_anchors;
@@ -257,8 +260,8 @@ static size_t count_right(const ted4_scene *s, int linear)
     return right;
 }
 
-/* In log2 the error of a scaling is a share of it, however small it is. In linear units, kept for
- * comparison, such scalings are lost. */
+/* In log2 the error of a scaling is relative to the scaling, however small it is. In linear units,
+ * kept for comparison, such scalings are lost. */
 static void test_scalings(void **state)
 {
     (void)state;
@@ -291,8 +294,8 @@ static void test_scalings(void **state)
 
 /* ---- 8: anchors whose activation stays near 0 ---- */
 
-/* Every third anchor is marked by an offset that nothing else has; absent: it also lives between
- * two frames, far too short for either. */
+/* Marks every third anchor by an offset that no other has. absent: its span also lies between two
+ * frames and is too short to reach either. */
 static void mark(ted4_trainer *t, int absent)
 {
     const int tau = t->layout.first[TED4_TAU];
@@ -305,7 +308,7 @@ static void mark(ted4_trainer *t, int absent)
     }
 }
 
-/* Anchors that go into stage 2. */
+/* Counts the anchors that enter stage 2. */
 static void count(const ted4_trainer *t, size_t *marked, size_t *others)
 {
     *marked = 0;
@@ -340,8 +343,8 @@ static void test_absent(void **state)
 
 /* ---- positions in FP16 ---- */
 
-/* Far from the origin of the world, FP16 of world coordinates would be coarser than the scene's
- * details; and a stray point must neither spread the range nor leave it. */
+/* Far from the origin of the world, FP16 world coordinates would be coarser than the scene's
+ * details; and an outlier must neither widen the range nor lie outside it. */
 static void test_far_away(void **state)
 {
     static const float shift[3] = { 1000, -500, 2000 };
@@ -370,8 +373,8 @@ static void test_far_away(void **state)
     ted4_trainer_finish(&t);
 }
 
-/* Places that FP16 cannot tell apart become one anchor, before stage 2 trains on what the file
- * holds. */
+/* Positions that FP16 cannot distinguish become one anchor, before stage 2 trains on the values of
+ * the file. */
 static void test_twins(void **state)
 {
     const ted4_train_options o = ball_options();

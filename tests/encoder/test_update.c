@@ -42,7 +42,7 @@ static double volume_loss(double (*scale)[SPLATS], const uint8_t *seen, double w
     return n > 0 ? weight * sum / (double)n : 0;
 }
 
-/* share: of Gaussians on screen, in tenths; 0: none, and the gradient must stay what it was. */
+/* share: tenths of the Gaussians that are on screen; 0: none, and the gradient must not change. */
 static void check_volume(ted4_trainer *t, unsigned share)
 {
     static float scale[3][SPLATS], d[3][SPLATS], centre[3][SPLATS];
@@ -113,7 +113,7 @@ static double bank_loss(const double *z, size_t rows, size_t width, double weigh
     return rows > 2 ? weight * sum / (double)((rows - 2) * width) : 0;
 }
 
-/* frames 9: five rows; 5: three rows, one difference; 3: two rows, no difference. */
+/* 9 frames: five rows; 5: three rows, one difference; 3: two rows, no difference. */
 static void test_bank(void **state)
 {
     static const uint32_t frames[] = { 9, 5, 3 };
@@ -157,8 +157,8 @@ static double sigmoid(double x)
     return 1 / (1 + exp(-x));
 }
 
-/* Gradients of a logit channel after ted4_update_parameters on zero gradients: weight / n times the
- * slope of the sigmoid, in every lane that is used. */
+/* Checks the gradients of a logit channel after ted4_update_parameters on zero gradients: weight /
+ * n times the slope of the sigmoid, in every used lane. */
 static void check_logits(const ted4_trainer *t, const float *before, int channel, double weight)
 {
     const double n = (double)t->anchors.n;

@@ -1,6 +1,6 @@
-/* test_useful.c - data/useful.h where there is no plain background: points on a textured wall
- * help, also where it faces the cameras; points at random do not; pictures that agree everywhere,
- * or nowhere, tell nothing.
+/* test_useful.c - data/useful.h without a plain background: points on a textured wall are useful,
+ * also if it faces the cameras; random points are not; if pictures agree everywhere, or nowhere,
+ * they give no information, and points count as useful.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <stdlib.h>
@@ -10,14 +10,15 @@
 #include "data/useful.h"
 #include "train/math/random.h"
 
-/* Cameras side by side before a slanted wall, z = WALL + slant x, with waves of colour on it. */
+/* Cameras side by side in front of a slanted wall, z = WALL + slant x, with a wave pattern in its
+ * colour. */
 enum { CAMERAS = 7, WIDTH = 128, HEIGHT = 96, POINTS = 3000 };
 #define APART 0.3
 #define WALL  4.0
 #define SLANT 1.2
 #define FOCAL 120.0
 
-/* Pictures of cameras that are TINTED differ in colour by more than the texture does. */
+/* TINTED: the colours of the cameras differ by more than the texture does. */
 typedef enum { TEXTURE, PLAIN, TINTED } look;
 
 static const double height[] = { 20, 0, 8 };
@@ -52,7 +53,7 @@ static void draw(wall *w, int camera, look how, double slant)
     }
 }
 
-/* Points on the wall; so many of every ten lie before or behind it instead. */
+/* Puts points on the wall, except for random_of_ten in ten, which lie in front of or behind it. */
 static void put_points(wall *w, uint32_t random_of_ten, double slant)
 {
     for (uint64_t i = 0; i < POINTS; i++) {

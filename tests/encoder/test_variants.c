@@ -1,8 +1,8 @@
-/* test_variants.c - every variant of the method, trained from pictures to a file: the file says
- * which it is and can be written again from what was decoded, what the variant does without is not
- * there, the rate that training optimised is the rate of the file within 1 %, and the pictures are
- * about right. Variants of stage 2 from one stage 1: test_stage1.c. What the gradients of each are
- * worth: test_generate_grad.c, test_rate_grad.c.
+/* test_variants.c - every variant of the method, trained from pictures to a file: the file declares
+ * its variant and can be written again from the decoded scene; parts that the variant lacks are
+ * absent; the rate that training optimised is the rate of the file within 1 %; and quality is about
+ * right. Variants of stage 2 from one stage 1: test_stage1.c. Gradients of each variant:
+ * test_generate_grad.c, test_rate_grad.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "test.h"
 #include "ball_decoded.h"
@@ -13,7 +13,7 @@
 
 enum { MOST_OPTIONS = 2 };
 
-/* What a file says of itself. */
+/* The variant as declared in a file. */
 typedef struct {
     int motion, bank, activation, temporal_mask, offset_mask, view, linear, factorised, slices;
 } traits;
@@ -34,11 +34,11 @@ static traits traits_of(const ted4_header *h)
 typedef struct {
     const char *name, *option[MOST_OPTIONS];
     traits want;
-    double psnr; /* at least, over the training pictures */
+    double psnr; /* lower bound, over the training pictures */
 } variant;
 
-/* Traits of the whole method: { 1, 1, 1, 1, 1, 1, 0, 0, 2 }. Qualities are floors, 5 dB and more
- * below what comes out. */
+/* Traits of the whole method: { 1, 1, 1, 1, 1, 1, 0, 0, 2 }. The bounds of PSNR are 5 dB or more
+ * below the usual results. */
 static const variant variants[] = {
     { "whole", { NULL }, { 1, 1, 1, 1, 1, 1, 0, 0, 2 }, 28 },
     { "no motion", { "motion=0" }, { 0, 0, 1, 0, 1, 1, 0, 0, 2 }, 28 },
@@ -119,7 +119,7 @@ static ball_file code(const variant *v, ted4_trainer *t)
     return f;
 }
 
-/* Colour correction was learnt, and is of no consequence to the file. */
+/* Colour correction was learnt, and does not affect the file. */
 static void check_colour(const variant *v, ted4_trainer *t, const ball_file *f)
 {
     int learnt = 0;
@@ -152,7 +152,7 @@ static void check_variant(const variant *v, ball_file *f)
     ted4_trainer_finish(&t);
 }
 
-/* No option is without effect: every file is another one. */
+/* Every option has an effect: all files differ. */
 static void test_variants(void **state)
 {
     enum { N = sizeof variants / sizeof variants[0] };

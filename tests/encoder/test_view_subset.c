@@ -1,5 +1,5 @@
-/* test_view_subset.c - train/state/view_subset.c: pictures that stand for all show every frame
- * before any twice, whatever the numbers of cameras and frames.
+/* test_view_subset.c - train/state/view_subset.c: view subsets contain every frame before any frame
+ * twice, for any numbers of cameras and frames.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdlib.h>
 
@@ -8,8 +8,8 @@
 
 enum { MOST = 400 };
 
-/* Camera by camera, as folders come; one camera of all is held out, and frame 0 of the others'
- * first, so that frames differ in their number. */
+/* Pictures are sorted by camera, as in folders. One whole camera is held out, and frame 0 of the
+ * first other camera, so that frames have different numbers of pictures. */
 static void make(ted4_dataset *d, ted4_picture *picture, uint32_t frames, uint32_t cameras)
 {
     *d = (ted4_dataset) { .pictures = picture,
@@ -58,7 +58,7 @@ static void test_all_frames(void **state)
         }
 }
 
-/* Of many frames a few, and cameras: those of two draws differ. */
+/* If there are many frames, a draw contains some frames and cameras, and two draws differ. */
 static void test_drawn(void **state)
 {
     static ted4_picture picture[MOST];

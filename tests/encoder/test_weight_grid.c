@@ -1,4 +1,4 @@
-/* test_weight_grid.c - train/model/weight_grid.c: weights on coarse grids, each unit on its own.
+/* test_weight_grid.c - train/model/weight_grid.c: weights on coarse grids, one grid per unit.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <string.h>
@@ -40,8 +40,8 @@ static void test_rounds(void **state)
     }
 }
 
-/* What is on a grid stays there; all bits change nothing; nothing at all, and what is next to
- * nothing, stays as it is. */
+/* Values on a grid do not change; full bits change nothing; zero and nearly zero weights do not
+ * change. */
 static void test_stays(void **state)
 {
     float x[N], once[N], tiny[2] = { 0x1p-100f, -0x1p-149f }, none[3] = { 0, 0, 0 };
@@ -53,7 +53,7 @@ static void test_stays(void **state)
     assert_memory_equal(x, once, sizeof x);
     for (int bits = 1; bits < 12; bits++)
         for (int k = 0; k < 40; k++) {
-            draw(x, N, 7, 0.9f + 0.01f * (float)k); /* the largest goes up to a power of two, or
+            draw(x, N, 7, 0.9f + 0.01f * (float)k); /* the largest is rounded up to a power of two,
                                                        down to one, or neither */
             ted4_weight_grid_round(x, N, bits);
             memcpy(once, x, sizeof x);
@@ -83,8 +83,8 @@ static ted4_shape shape_of(unsigned in, unsigned hidden, unsigned out)
     return s;
 }
 
-/* A unit of small weights loses no more of them than one of large weights does, and networks, and
- * the bank, have bits of their own. */
+/* The relative error of a unit with small weights is no larger than that of one with large weights;
+ * networks and the bank have separate numbers of bits. */
 static void test_units(void **state)
 {
     const ted4_shape s = shape_of(8, 4, 2);
