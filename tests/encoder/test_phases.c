@@ -246,7 +246,7 @@ static void test_order(void **state)
     ted4_trainer_finish(&t);
 }
 
-/* ---- what is drawn ---- */
+/* ---- rendered values ---- */
 
 /* Mean distance of the last step's values from whole symbols: a quarter with noise. *most: the
  * largest. */

@@ -123,7 +123,7 @@ static void test_random(void **state)
     assert_false(are_useful(TEXTURE, 10, 0));
 }
 
-/* Whatever the points are. */
+/* If pictures give no information, any points count as useful. */
 static void test_no_meta_lines(void **state)
 {
     (void)state;
