@@ -479,5 +479,5 @@ int main(void)
         cmocka_unit_test(test_gradient_sizes), cmocka_unit_test(test_directions),
     };
 
-    return cmocka_run_group_tests_name("generation at its extremes", tests, NULL, NULL);
+    return cmocka_run_group_tests_name("generation at extreme values", tests, NULL, NULL);
 }

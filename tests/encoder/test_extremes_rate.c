@@ -380,5 +380,5 @@ int main(void)
         cmocka_unit_test(test_gradient_sizes), cmocka_unit_test(test_integer),
     };
 
-    return cmocka_run_group_tests_name("rate at its extremes", tests, NULL, NULL);
+    return cmocka_run_group_tests_name("rate at extreme values", tests, NULL, NULL);
 }
