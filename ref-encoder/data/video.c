@@ -17,6 +17,7 @@
 #include <xxhash.h>
 #include "data/data_util.h"
 #include "data/raw_scene.h"
+#include "data/video_kind.h"
 
 #define COUNT   "count"     /* file with the number of frames, in a complete folder */
 #define NO_EXEC 127         /* exit status of a child that could not start ffmpeg */
@@ -141,28 +142,29 @@ static int write_count(const char *folder, size_t n)
     return fine ? 0 : -1;
 }
 
+/* A video that is unpacked: who receives progress reports, its absolute path, the demuxer that
+ * reads it, and the folder of its frames. */
+typedef struct {
+    const ted4_dataset_options *o;
+    const char *video, *demuxer, *folder;
+} unpacking;
+
 /* Runs in the child process: works in the folder, writes errors to messages, and never returns. */
-static void become_ffmpeg(const char *input, const char *limit, const char *folder, int messages)
+static void become_ffmpeg(const unpacking *a, const char *input, const char *limit, int messages)
 {
-    const int none = chdir(folder) == 0 ? open("/dev/null", O_RDWR) : -1;
+    const int none = chdir(a->folder) == 0 ? open("/dev/null", O_RDWR) : -1;
 
     if (none >= 0 && dup2(none, 0) >= 0 && dup2(none, 1) >= 0 && dup2(messages, 2) >= 0)
         execlp("ffmpeg", "ffmpeg", "-nostdin", "-hide_banner", "-v", "repeat+error",
-               "-protocol_whitelist", "file", "-i", input, "-map", "0:v:0", "-vf", FILTERS, "-r",
-               RATE, "-frames:v", limit, "-flags", "+bitexact", "-fflags", "+bitexact",
-               "-compression_level", "1", "-f", "image2", "%06d.png", (char *)NULL);
+               "-protocol_whitelist", "file", "-f", a->demuxer, "-i", input, "-map", "0:v:0", "-vf",
+               FILTERS, "-r", RATE, "-frames:v", limit, "-flags", "+bitexact", "-fflags",
+               "+bitexact", "-compression_level", "1", "-f", "image2", "%06d.png", (char *)NULL);
     _exit(NO_EXEC);
 }
 
-/* The receiver of progress reports about a video, and the folder of its frames. */
-typedef struct {
-    const ted4_dataset_options *o;
-    const char *video, *folder;
-} audience;
-
 /* Waits until there is something to read or the end is reached, and meanwhile reports the number of
  * frames. */
-static void await(int from, const audience *a)
+static void await(int from, const unpacking *a)
 {
     struct pollfd wanted = { .fd = from, .events = POLLIN };
 
@@ -173,7 +175,7 @@ static void await(int from, const audience *a)
 }
 
 /* Reads messages to the end and keeps the last ones in tail, as a string. */
-static void read_messages(int from, const audience *a, char tail[TAIL])
+static void read_messages(int from, const unpacking *a, char tail[TAIL])
 {
     size_t n = 0;
 
@@ -191,9 +193,9 @@ static void read_messages(int from, const audience *a, char tail[TAIL])
     tail[n] = 0;
 }
 
-/* Runs ffmpeg in the audience's folder. Returns its exit status, or -1, and gives the end of its
+/* Runs ffmpeg in a->folder. Returns its exit status, or -1, and gives the end of its
  * messages. They come through a pipe, because a file could not be written on a full disk. */
-static int run_ffmpeg(const audience *a, size_t most, char tail[TAIL])
+static int run_ffmpeg(const unpacking *a, size_t most, char tail[TAIL])
 {
     char input[4200], limit[24];
     int status, ends[2];
@@ -204,7 +206,7 @@ static int run_ffmpeg(const audience *a, size_t most, char tail[TAIL])
         return -1;
     const pid_t child = fork();
     if (child == 0)
-        become_ffmpeg(input, limit, a->folder, ends[1]);
+        become_ffmpeg(a, input, limit, ends[1]);
     close(ends[1]);
     if (child > 0)
         read_messages(ends[0], a, tail);
@@ -235,7 +237,7 @@ static void last_words(char tail[TAIL], char words[200])
     words[n] = 0;
 }
 
-static int fill(const audience *a, size_t most, ted4_message *m)
+static int fill(const unpacking *a, size_t most, ted4_message *m)
 {
     const char *const video = a->video, *const folder = a->folder;
     char tail[TAIL], words[200];
@@ -255,8 +257,7 @@ static int fill(const audience *a, size_t most, ted4_message *m)
 }
 
 /* Unpacks into a new folder beside the final one, and renames it. */
-static int unpack(const char *video, size_t most, const char *final, const ted4_dataset_options *o,
-                  ted4_message *m)
+static int unpack(const unpacking *a, size_t most, const char *final, ted4_message *m)
 {
     const size_t size = strlen(final) + 8;
     char *folder = malloc(size);
@@ -269,7 +270,11 @@ static int unpack(const char *video, size_t most, const char *final, const ted4_
         free(folder);
         return -1;
     }
-    int result = fill(&(audience) { o, video, folder }, most, m);
+    unpacking with_folder = *a;
+
+    with_folder.folder = folder;
+
+    int result = fill(&with_folder, most, m);
     if (result == 0 && rename(folder, final) != 0 && !is_complete(final))
         result = ted4_say(m, "%s: %s", final, strerror(errno));
     /* The folder does not exist any more if it was renamed. It does if this failed or another
@@ -277,25 +282,6 @@ static int unpack(const char *video, size_t most, const char *final, const ted4_
     remove_folder(folder);
     free(folder);
     return result;
-}
-
-/* Refuses text files, which are not videos: ffmpeg would open other files that they list. Returns
- * 0, or -1 with *m filled. */
-static int check_kind(const char *video, ted4_message *m)
-{
-    uint8_t head[512];
-    FILE *f = fopen(video, "rb");
-    size_t i = 0;
-
-    if (f == NULL)
-        return ted4_say(m, "%s: %s", video, strerror(errno));
-    const size_t n = fread(head, 1, sizeof head, f);
-    fclose(f);
-    while (i < n && (head[i] >= ' ' || head[i] == '\t' || head[i] == '\n' || head[i] == '\r'))
-        i++;
-    return i < n ? 0
-                 : ted4_say(m, "%s: %s, expected a video", video,
-                            n == 0 ? "empty" : "text (a playlist?)");
 }
 
 /* Returns an absolute path, since ffmpeg works in another folder. Owned by the caller. */
@@ -312,6 +298,7 @@ char *ted4_video_unpack(const char *video, size_t most, const ted4_dataset_optio
     struct stat s;
     const size_t limit = most > 0 && most < TED4_MAX_FRAMES ? most : TED4_MAX_FRAMES;
     char *cache = cache_folder(m), *path = cache == NULL ? NULL : absolute(video);
+    unpacking a = { .o = o, .video = path };
     char *final = NULL;
 
     if (cache != NULL && (path == NULL || stat(path, &s) != 0))
@@ -320,7 +307,8 @@ char *ted4_video_unpack(const char *video, size_t most, const ted4_dataset_optio
         ted4_say_no_memory(m);
     if (final != NULL && !is_complete(final)) {
         remove_folder(final);
-        if (check_kind(path, m) != 0 || unpack(path, limit, final, o, m) != 0) {
+        a.demuxer = ted4_video_demuxer(path, m);
+        if (a.demuxer == NULL || unpack(&a, limit, final, m) != 0) {
             free(final);
             final = NULL;
         }

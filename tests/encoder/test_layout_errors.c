@@ -273,7 +273,10 @@ static void test_videos(void **state)
     (void)state;
     must(path != NULL, "PATH");
     setenv("XDG_CACHE_HOME", cache.path, 1);
-    tiny_bytes(&f, "it's \"one\" % $x.mp4", "not a video\0\1\2", 14);
+    tiny_bytes(&f, "it's \"one\" % $x.mp4",
+               "\0\0\0\x18"
+               "ftypmp42",
+               12);
     tiny_text(
         &f, "cams.json",
         "{\"cameras\": [{\"name\": \"one\", \"video\": \"it's \\\"one\\\" % $x.mp4\"," SIZE K W2C
@@ -282,6 +285,12 @@ static void test_videos(void **state)
         refuse(&f, "it's \"one\" % $x.mp4: ffmpeg", "failed after 0 frames: ");
         assert_int_equal(files_in(tiny_path(&cache, "ted4")), 0);
     }
+    tiny_bytes(&f, "it's \"one\" % $x.mp4", "\0#EXTM3U\nother.mp4\n", 19);
+    refuse(&f, "it's \"one\" % $x.mp4: begins like no video that is known here", "MP4, MOV");
+    tiny_bytes(&f, "it's \"one\" % $x.mp4",
+               "\0\0\0\x18"
+               "ftypmp42",
+               12);
     setenv("PATH", cache.path, 1);
     refuse(&f, "it's \"one\" % $x.mp4", "ffmpeg is needed");
     assert_int_equal(files_in(tiny_path(&cache, "ted4")), 0);

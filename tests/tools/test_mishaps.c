@@ -180,7 +180,10 @@ static void test_full_video_cache(void **state)
     (void)state;
     must(path != NULL, "PATH");
     setenv("XDG_CACHE_HOME", tiny_path(&f, "cache"), 1);
-    tiny_text(&f, "one.mp4", "a video\1");
+    tiny_bytes(&f, "one.mp4",
+               "\0\0\0\x18"
+               "ftypmp42",
+               12);
     tiny_text(&f, "cams.json",
               "{\"cameras\": [{\"name\": \"one\", \"w\": 16, \"h\": 12, \"K\": "
               "[[9,0,8],[0,9,6],[0,0,1]], \"w2c\": " TINY_POSE "}]}");
