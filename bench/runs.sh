@@ -1,10 +1,12 @@
 # runs.sh - what bench/sweep.sh, bench/stability.sh, bench/capacity.sh and bench/zoo.sh share: the
 # runs of a table, one process each, and a row of a CSV for each result. Sourced, from the project's
 # root. A row's key tells its options and the sources that decide its bytes and numbers; comments
-# and spacing do not count. The row is stale when either differs from the present ones. The script
-# may be killed at any moment and called again, also several times at once: programs are copied
-# before use, each stage 1 that runs share and each own scene is made once, trainings go on from
-# their last checkpoint, and rows go into the table whole. The script sets beforehand:
+# and spacing do not count. The row is stale when either differs from the present ones, unless
+# bench/equal.csv says that those sources write the same bytes. A row keeps the key of the sources
+# that made it. The script may be killed at any moment and called again, also several times at once:
+# programs are copied before use, each stage 1 that runs share and each own scene is made once,
+# trainings go on from their last checkpoint, and rows go into the table whole. The script sets
+# beforehand:
 #     program                   its name
 #     build data work results   folders
 #     table                     the table of runs
@@ -162,8 +164,39 @@ put_row() {
     ) 9<"$results"
 }
 
-# done, older (same options, other sources), stale or missing: $state; the row's key: $key; that of
-# its training: $trained_key
+# Sources that are known to write the same bytes as $1, by the table equal.csv among the results,
+# with blanks around.
+equal_to() {
+    [ ! -f "$results/equal.csv" ] || awk -F, -v now="$1" '
+        NR > 1 { from[NR] = $1; to[NR] = $2 }
+        END {
+            known[now] = 1
+            do {
+                found = 0
+                for (i in from)
+                    if (known[to[i]] && !known[from[i]])
+                        found = known[from[i]] = 1
+            } while (found)
+            for (k in known)
+                if (known[k] && k != now)
+                    printf " %s", k
+            print " "
+        }' "$results/equal.csv"
+}
+
+# Was the row with the key $had made by other sources, which are known to write the same bytes?
+is_equal() {
+    made=${had##*-}
+    case $sources_now in
+    "$version") equal=$equal_version ;;
+    *)          equal=$equal_own ;;
+    esac
+    case $made in *"$measured") made=${made%"$measured"} ;; *) return 1 ;; esac
+    case $equal in *" $made "*) return 0 ;; *) return 1 ;; esac
+}
+
+# done, equal (made by sources of the same bytes), older (same options, other sources), stale or
+# missing: $state; the row's key: $key; that of its training: $trained_key
 find_state() {
     sources_now=$version
     case $where in own:*) sources_now=$own_version ;; esac
@@ -172,7 +205,7 @@ find_state() {
     had=$([ -f "$csv" ] && awk -F, -v tag="$tag" '$1 == tag { print $2 }' "$csv")
     case $had in
     "$key")        state=done ;;
-    "${key%-*}"-*) state=older ;;
+    "${key%-*}"-*) if is_equal; then state=equal; else state=older; fi ;;
     "")            state=missing ;;
     *)             state=stale ;;
     esac
@@ -184,7 +217,7 @@ make_row() {
     exec 8>"$work/runs/$tag.lock"
     flock -n 8 || return 2
     find_state
-    case $state$missing in done*|oldermissing) return 0 ;; esac
+    case $state$missing in done*|equal*|oldermissing) return 0 ;; esac
     find_scene || return
     for f in "$folder" "${judge:-$folder}"; do
         [ -d "$f" ] || { echo "$tag: skipped, no $f"; return 0; }
@@ -226,7 +259,7 @@ worker() {
             kill -0 $$ 2>/dev/null || exit 1
             case " $failed " in *" $tag "*) continue ;; esac
             find_state
-            case $state$missing in done*|oldermissing) continue ;; esac
+            case $state$missing in done*|equal*|oldermissing) continue ;; esac
             make_row
             case $? in 0) ;; 2) later=1 ;; *) failed="$failed $tag" ;; esac
             exec 7>&- 8>&-
@@ -274,6 +307,8 @@ begin_runs() {
         die "$csv has other columns than this script writes"
     version=$(sources)
     own_version=$(sources tools/scene/*.[ch])
+    equal_version=$(equal_to "$version")
+    equal_own=$(equal_to "$own_version")
     measured=
     [ -z "$judges" ] || measured=.$(awk -f bench/sources.awk $judges | short_hash)
     chosen=$(each_chosen) || exit 3

@@ -1,7 +1,9 @@
 """The wanted runs with the rows that are there.
 
 Of the rows of a CSV those count that the wanted options made, with these sources or older ones. A
-row that other options made is none.
+row that other options made is none. Each run has a state, which the script that makes the rows
+tells: done, equal (made by other sources, which bench/equal.csv knows to write the same bytes),
+older, stale or missing.
 SPDX-License-Identifier: BSD-2-Clause"""
 import sys
 
@@ -15,8 +17,8 @@ class Measured(Run):
         return self.row is not None
 
     def is_old(self):
-        """Other sources than the present ones made the row."""
-        return self.has() and self.state != "done"
+        """Sources that may write other bytes than the present ones made the row."""
+        return self.has() and self.state not in ("done", "equal")
 
     def name(self):
         return self.tag + ("†" if self.is_old() else "")
@@ -54,6 +56,15 @@ class Measured(Run):
 def mark(runs):
     """A dagger when other sources made one of these rows."""
     return "†" if any(run.is_old() for run in runs) else ""
+
+
+def made_with(runs):
+    """Which of these rows the present sources did not make, to be added to a sentence."""
+    equal = sum(run.has() and run.state == "equal" for run in runs)
+    old = sum(run.is_old() for run in runs)
+    return ((f", {equal} of them made by earlier sources that write the same bytes"
+             " ([equal.csv](equal.csv))" if equal else "")
+            + (f", {old} of them older than the sources (†)" if old else ""))
 
 
 class Runs:
@@ -127,9 +138,8 @@ class Runs:
 
     def summary(self):
         """How many of the wanted rows are there, as a sentence without its full stop."""
-        old = sum(run.is_old() for run in self.all)
         return (f"{sum(run.has() for run in self.all)} of {len(self.all)} wanted runs are there"
-                + (f", {old} of them older than the sources (†)" if old else ""))
+                + made_with(self.all))
 
 
 def own_options(runs, run, names=("set", "preset", "seed", "downscale", "capacity", "black",

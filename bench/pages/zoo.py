@@ -4,7 +4,7 @@ import os
 import re
 
 from .notes import read_notes
-from .rows import mark
+from .rows import made_with, mark
 from .words import Bars, Page, cells, fixed, signed
 
 MOST_BELOW = 1      # dB below the twin
@@ -103,14 +103,13 @@ def write(runs, _charts, _results, _pages):
               read_notes(os.environ.get("TED4_NOTES", "bench/zoo-notes.md")))
     page = Page()
     page.heading("The zoo: scenes as other people write them", 1)
-    old = sum(case.run.is_old() for case in zoo.cases)
+    sources = made_with([case.run for case in zoo.cases])
     page.prose(f"""`make zoo` writes this page from [zoo.csv](zoo.csv): {len(zoo.there)} of
-        {len(zoo.cases)} wanted runs are there, {old} of them older than the sources (†). Each case
-        shows the content of its twin, which is friendly, in a way in which others write scenes;
-        [zoo.txt](zoo.txt) is the table. The command makes the scene; then `ted4enc SCENE -o
-        FILE.ted4 --preset draft --seed 1` trains it, with the options that stand behind the
-        command. The preset is draft, because the default's 60,000 steps take ten minutes per case
-        on one core even for pictures of 96x64.""")
+        {len(zoo.cases)} wanted runs are there{sources}. Each case shows the content of its twin,
+        which is friendly, in a way in which others write scenes; [zoo.txt](zoo.txt) is the table.
+        The command makes the scene; then `ted4enc SCENE -o FILE.ted4 --preset draft --seed 1`
+        trains it, with the options that stand behind the command. The preset is draft, because the
+        default's 60,000 steps take ten minutes per case on one core even for pictures of 96x64.""")
     bars = Bars()
     case_bars(zoo, bars)
     back_bar(bars, zoo.lab, "the same on the scenes of the stability lab",
