@@ -1,0 +1,43 @@
+#!/bin/sh
+# test_pages.sh - every page of bench/ that is written from rows is what these rows give: each page
+# is made anew and compared with the one that is kept, with its charts. Every row says which sources
+# made it. A page that differs was edited by hand, or its rows or the sources changed after it was
+# made: `python3 -m bench.pages NAME` makes it. Prints lines as a cmocka program does; run by `make
+# test` from the project's root.
+# SPDX-License-Identifier: BSD-2-Clause
+set -u
+unset TED4_WORK TED4_TABLE TED4_PAGES TED4_NOTES TED4_RESULTS
+. tests/support/speak.sh
+command -v python3 >/dev/null || { skip pages 'there is no python3'; exit 0; }
+
+mkdir "$out/bench"
+cp -R bench/*.csv bench/*.md bench/*/ "$out/bench"
+rm -rf "$out/bench/pages"
+# page NAME FILE...: the page, and its files and folders of charts
+page() {
+    name=$1; shift
+    TED4_RESULTS=$out/bench TED4_PAGES=$out/bench python3 -m bench.pages "$name" >"$out/said" 2>&1 ||
+        { fail "$name" "$(cat "$out/said")"; return; }
+    for f; do
+        diff -r "bench/$f" "$out/bench/$f" >"$out/said" 2>&1 ||
+            { fail "$name" "$f is not what its rows give: $(head -n 5 "$out/said")"; return; }
+    done
+    ok "$name"
+}
+page report report.md report-tables.md charts
+page capacity capacity.md capacity
+page stability stability.md lab
+page zoo zoo.md
+
+# A key is the hash of the options, a hyphen, and the hash of the sources; of what judges too, where
+# that is not the sources.
+for csv in sweep capacity stability zoo; do
+    bad_rows=$(awk -F, 'NR > 1 && $2 !~ /^[0-9a-f]+-[0-9a-f]+(\.[0-9a-f]+)?$/ { print $1 }' \
+        "bench/$csv.csv")
+    [ -z "$bad_rows" ] && ok "made_with_$csv" || fail "made_with_$csv" "$bad_rows"
+done
+# Equal bytes are claimed from one state of the sources to a later one, with the number of cases.
+bad_rows=$(awk -F, 'NR > 1 && ($1 !~ /^[0-9a-f]+$/ || $2 !~ /^[0-9a-f]+$/ || $1 == $2 || $3 < 1 ||
+    $4 == "")' bench/equal.csv)
+[ -z "$bad_rows" ] && ok equal || fail equal "$bad_rows"
+exit $bad
