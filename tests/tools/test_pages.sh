@@ -16,8 +16,8 @@ rm -rf "$out/bench/pages"
 # page NAME FILE...: the page, and its files and folders of charts
 page() {
     name=$1; shift
-    TED4_RESULTS=$out/bench TED4_PAGES=$out/bench python3 -m bench.pages "$name" >"$out/said" 2>&1 ||
-        { fail "$name" "$(cat "$out/said")"; return; }
+    TED4_RESULTS=$out/bench TED4_PAGES=$out/bench python3 -m bench.pages "$name" \
+        >"$out/said" 2>&1 || { fail "$name" "$(cat "$out/said")"; return; }
     for f; do
         diff -r "bench/$f" "$out/bench/$f" >"$out/said" 2>&1 ||
             { fail "$name" "$f is not what its rows give: $(head -n 5 "$out/said")"; return; }
