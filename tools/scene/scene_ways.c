@@ -2,37 +2,12 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "scene_ways.h"
 
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-const char ted4_scene_ways_help[] =
-    "What other writers do; most of these go together. Content stays the same:\n"
-    "  --background B      room, white, black or transparent: what is around the things\n"
-    "  --turns             one camera a time, each elsewhere; as many times as cameras\n"
-    "  --points P          surface (default), box10 (100,000 at random in a box ten times as wide\n"
-    "                      as the things), none, random (4,000 in a box about the things)\n"
-    "  --unit S            coordinates in the files are S times as large\n"
-    "  --up A              y or z (default)\n"
-    "  --centre X,Y        principal point, in widths and heights (0.5,0.5)\n"
-    "  --sizes             cameras differ in picture size: 1, 3/4, 5/4 in turn\n"
-    "  --alpha A           straight (default) or premultiplied\n"
-    "  --png K             16 (bits), grey, palette or interlaced\n"
-    "  --jpeg K            baseline or progressive\n"
-    "  --paths P           file_path is plain (neither folder nor ending), ext (without folder) "
-    "or\n"
-    "                      folder (without ending)\n"
-    "  --split S           val (transforms_val.json), train-only (nothing else) or times (test "
-    "times\n"
-    "                      are those that training lacks: see --hold)\n"
-    "  --missing N         of the pictures that are listed for training, N are not there\n"
-    "  --k-each            each picture states its K; of colmap, each camera\n"
-    "  --starts            calibration: clips begin at different times, which cams.json tells\n"
-    "  --masks             truth/masks: where training pictures show what moves, or its shadow\n";
-
 enum {
-    BACKGROUND = TED4_SCENE_WAYS,
+    BACKGROUND,
     TURNS,
     POINTS,
     UNIT,
@@ -50,23 +25,33 @@ enum {
     MASKS
 };
 
-const struct option ted4_scene_ways[TED4_SCENE_N_WAYS] = {
-    { "background", required_argument, NULL, BACKGROUND },
-    { "turns", no_argument, NULL, TURNS },
-    { "points", required_argument, NULL, POINTS },
-    { "unit", required_argument, NULL, UNIT },
-    { "up", required_argument, NULL, UP },
-    { "centre", required_argument, NULL, CENTRE },
-    { "sizes", no_argument, NULL, SIZES },
-    { "alpha", required_argument, NULL, ALPHA },
-    { "png", required_argument, NULL, PNG },
-    { "jpeg", required_argument, NULL, JPEG },
-    { "paths", required_argument, NULL, PATHS },
-    { "split", required_argument, NULL, SPLIT },
-    { "missing", required_argument, NULL, MISSING },
-    { "k-each", no_argument, NULL, K_EACH },
-    { "starts", no_argument, NULL, STARTS },
-    { "masks", no_argument, NULL, MASKS },
+const ted4_argument ted4_scene_ways[TED4_SCENE_N_WAYS] = {
+    [BACKGROUND] = { 0, "background", "B",
+                     "room, white, black or transparent: what is around the things" },
+    [TURNS] = { 0, "turns", NULL, "one camera a time, each elsewhere; as many times as cameras" },
+    [POINTS] = { 0, "points", "P",
+                 "surface (default), box10 (100,000 at random in a box ten times as wide as the "
+                 "things), none, random (4,000 in a box about the things)" },
+    [UNIT] = { 0, "unit", "S", "coordinates in the files are S times as large" },
+    [UP] = { 0, "up", "A", "y or z (default)" },
+    [CENTRE] = { 0, "centre", "X,Y", "principal point, in widths and heights. Default 0.5,0.5" },
+    [SIZES] = { 0, "sizes", NULL, "cameras differ in picture size: 1, 3/4, 5/4 in turn" },
+    [ALPHA] = { 0, "alpha", "A", "straight (default) or premultiplied" },
+    [PNG] = { 0, "png", "K", "16 (bits), grey, palette or interlaced" },
+    [JPEG] = { 0, "jpeg", "K", "baseline or progressive" },
+    [PATHS] = { 0, "paths", "P",
+                "file_path is plain (neither folder nor ending), ext (without folder) or folder "
+                "(without ending)" },
+    [SPLIT] = { 0, "split", "S",
+                "val (transforms_val.json), train-only (nothing else) or times (test times are "
+                "those that training lacks: see --hold)" },
+    [MISSING] = { 0, "missing", "N",
+                  "of the pictures that are listed for training, N are not there" },
+    [K_EACH] = { 0, "k-each", NULL, "each picture states its K; of colmap, each camera" },
+    [STARTS] = { 0, "starts", NULL,
+                 "calibration: clips begin at different times, which cams.json tells" },
+    [MASKS] = { 0, "masks", NULL,
+                "truth/masks: where training pictures show what moves, or its shadow" },
 };
 
 static int word(ted4_ray_vocabulary v, const char *text, int *number)

@@ -3,20 +3,15 @@
 #ifndef SCENE_WAYS_H
 #define SCENE_WAYS_H
 
-#include <getopt.h>
-
 #include "ray_ways.h"
+#include "tool/arguments.h"
 
-/* The lines of the help for these options. */
-extern const char ted4_scene_ways_help[];
+enum { TED4_SCENE_N_WAYS = 16 };
 
-/* The numbers of long options begin here; smaller numbers are letters. */
-enum { TED4_SCENE_WAYS = 256, TED4_SCENE_N_WAYS = 16 };
+extern const ted4_argument ted4_scene_ways[TED4_SCENE_N_WAYS];
 
-/* The options for getopt_long. */
-extern const struct option ted4_scene_ways[TED4_SCENE_N_WAYS];
-
-/* Applies the option of that number. Returns 0, or -1 if text is not a valid value. */
+/* Applies the option of that index in ted4_scene_ways. text: its value, or NULL. Returns 0, or -1
+ * if text is not a valid value. */
 int ted4_scene_way(int number, const char *text, ted4_ray_ways *w);
 
 #endif

@@ -10,39 +10,83 @@
 #include <string.h>
 #include "ray_rig.h"
 #include "scene_ways.h"
-#include "ted4.h"
+#include "tool/arguments.h"
 
 enum { EXIT_FINE = 0, EXIT_TROUBLE = 3 };
 
-static const char usage[] =
-    "usage: ted4scene NAME -o FOLDER [options]\n"
-    "Makes a small synthetic dynamic scene. What is not given, and has no default here, is that of "
-    "the\n"
-    "NAME in the list below.\n"
-    "  -o FOLDER           where to; made if missing, must be empty without -f\n"
-    "  --size WxH          picture size, 8 to 4096\n"
-    "  --cameras N         training cameras, 1 to 1000\n"
-    "  --test-cameras N    test cameras, 0 to 1000\n"
-    "  --frames N          times, 1 to 1000\n"
-    "  --hold N            training cameras lack time N/2 of every N, test cameras have it; 2 to\n"
-    "                      1000, 0: none\n"
-    "  --pose-error D      training cameras are stated turned by D degrees, and moved as far; 0 to "
-    "10\n"
-    "  --tint S            training cameras disagree in colour and exposure; 0 to 2\n"
-    "                      These three go with the layouts blender, nerfstudio and hypernerf, "
-    "which\n"
-    "                      list what is held out; in others a NAME's hold is left out\n"
-    "  --layout L          blender, nerfstudio, colmap, colmap-text, hypernerf, neu3d, calibration "
-    "or\n"
-    "                      llff, of which the last has stills of one time (blender)\n"
-    "  --video             neu3d and calibration: lossless videos by ffmpeg, not frames\n"
-    "  --seed S            of textures, points, errors and tints, 32 bits (1)\n"
-    "  -j N                threads (all)\n"
-    "  -f                  write into a folder that is not empty\n"
-    "  -h, -V              this help, the version\n"
-    "truth.json in the folder says what is held out or disturbed.\n";
+enum {
+    OPT_OUTPUT,
+    OPT_SIZE,
+    OPT_CAMERAS,
+    OPT_TEST_CAMERAS,
+    OPT_FRAMES,
+    OPT_HOLD,
+    OPT_POSE_ERROR,
+    OPT_TINT,
+    OPT_LAYOUT,
+    OPT_VIDEO,
+    OPT_SEED,
+    OPT_THREADS,
+    OPT_FORCE,
+    OPT_HELP,
+    OPT_VERSION,
+    OPT_WAYS /* the options of scene_ways.h begin here */
+};
 
-static const char names[] = "NAMEs, with picture size, training + test cameras, times, hold:\n";
+enum { N_OPTIONS = OPT_WAYS + TED4_SCENE_N_WAYS };
+
+/* parse fills in those of scene_ways.h. */
+static ted4_argument options[N_OPTIONS] = {
+    [OPT_OUTPUT] = { 'o', "output", "FOLDER",
+                     "where to; made if missing, must be empty without -f" },
+    [OPT_SIZE] = { 0, "size", "WxH", "picture size, 8 to 4096" },
+    [OPT_CAMERAS] = { 0, "cameras", "N", "training cameras, 1 to 1000" },
+    [OPT_TEST_CAMERAS] = { 0, "test-cameras", "N", "test cameras, 0 to 1000" },
+    [OPT_FRAMES] = { 0, "frames", "N", "times, 1 to 1000" },
+    [OPT_HOLD] = { 0, "hold", "N",
+                   "training cameras lack time N/2 of every N, test cameras have it; 2 to 1000, "
+                   "0: none" },
+    [OPT_POSE_ERROR] = { 0, "pose-error", "D",
+                         "training cameras are stated turned by D degrees, and moved as far; 0 to "
+                         "10" },
+    [OPT_TINT] = { 0, "tint", "S", "training cameras disagree in colour and exposure; 0 to 2" },
+    [OPT_LAYOUT] = { 0, "layout", "L",
+                     "blender (default), nerfstudio, colmap, colmap-text, hypernerf, neu3d, "
+                     "calibration or llff, of which the last has stills of one time" },
+    [OPT_VIDEO] = { 0, "video", NULL,
+                    "neu3d and calibration: lossless videos by ffmpeg, not frames" },
+    [OPT_SEED] = { 0, "seed", "S", "of textures, points, errors and tints, 32 bits. Default 1" },
+    [OPT_THREADS] = { 'j', "threads", "N", "threads, 1 to 1024. Default: all cores" },
+    [OPT_FORCE] = { 'f', "force", NULL, "write into a folder that is not empty" },
+    [OPT_HELP] = TED4_ARGUMENT_HELP,
+    [OPT_VERSION] = TED4_ARGUMENT_VERSION,
+};
+
+static void print_names(FILE *f)
+{
+    for (int s = 0; s < RAY_SCENES; s++) {
+        const ted4_ray_plan *const p = ted4_ray_plan_of((ted4_ray_scene)s);
+
+        fprintf(f, "  %-8s  %s (%dx%d, %d + %d, %d, %d)\n", p->name, p->shows, p->width, p->height,
+                p->n_train, p->n_test, p->n_frames, p->hold);
+    }
+}
+
+static const ted4_command COMMAND = {
+    "ted4scene",
+    "NAME -o FOLDER [options]",
+    "Makes a small synthetic dynamic scene. What is not given, and has no default here, is that\n"
+    "of the NAME in the list below. The file truth.json in the folder says what is held out or\n"
+    "disturbed.",
+    options,
+    N_OPTIONS,
+    "--hold, --pose-error and --tint go with the layouts blender, nerfstudio and hypernerf, which\n"
+    "list what is held out; in others a NAME's hold is left out. The options from --background on\n"
+    "make files as other writers do; most of these go together, and the content stays the same.\n\n"
+    "Exit codes: 0 fine, 3 usage, input, output or resources.\n\n"
+    "NAMEs, with picture size, training + test cameras, times, hold:\n",
+    print_names,
+};
 
 /* Options that were not given are -1. */
 typedef struct {
@@ -125,19 +169,6 @@ static int hold_of(const char *text, int *hold)
     return status;
 }
 
-static void help(void)
-{
-    fputs(usage, stdout);
-    fputs(ted4_scene_ways_help, stdout);
-    fputs(names, stdout);
-    for (int s = 0; s < RAY_SCENES; s++) {
-        const ted4_ray_plan *const p = ted4_ray_plan_of((ted4_ray_scene)s);
-
-        printf("  %-8s  %s (%dx%d, %d + %d, %d, %d)\n", p->name, p->shows, p->width, p->height,
-               p->n_train, p->n_test, p->n_frames, p->hold);
-    }
-}
-
 /* Takes the options that were not given from the table. */
 static int fill(ted4_ray_options *o)
 {
@@ -190,75 +221,54 @@ static int layout_of(const char *name, ted4_ray_options *o)
     return complain(name, "not a layout (see -h)");
 }
 
-static int way(command *c, int number_of_option, const char *text)
+static int seed_of(const char *text, uint32_t *seed)
 {
-    if (ted4_scene_way(number_of_option, text, &c->set.ways) == 0)
+    long long value = 0;
+    const int status = number(text, 0, UINT32_MAX, &value);
+
+    *seed = (uint32_t)value;
+    return status;
+}
+
+static int way(command *c, int index, const char *text)
+{
+    if (ted4_scene_way(index, text, &c->set.ways) == 0)
         return EXIT_FINE;
     return complain(text, "not what goes with its option (see -h)");
 }
 
-static int option(command *c, int letter, const char *text)
+static int set_option(command *c, int index, const char *text)
 {
-    long long seed = 0;
-    int status = EXIT_FINE;
+    ted4_ray_options *const o = &c->set;
 
-    switch (letter) {
-    case 'o': c->folder = text; break;
-    case 'f': c->force = 1; break;
-    case 'j': status = integer(text, 1, 1024, &c->threads); break;
-    case 's': status = size_of(text, &c->set); break;
-    case 'c': status = integer(text, 1, TED4_RAY_MAX_COUNT, &c->set.n_train); break;
-    case 't': status = integer(text, 0, TED4_RAY_MAX_COUNT, &c->set.n_test); break;
-    case 'n': status = integer(text, 1, TED4_RAY_MAX_COUNT, &c->set.n_frames); break;
-    case 'H': status = hold_of(text, &c->set.hold); break;
-    case 'p': status = real(text, TED4_RAY_MOST_ERROR, &c->set.pose_error); break;
-    case 'T': status = real(text, TED4_RAY_MOST_TINT, &c->set.tint); break;
-    case 'l': status = layout_of(text, &c->set); break;
-    case 'v': c->set.video = 1; break;
-    case 'r':
-        status = number(text, 0, UINT32_MAX, &seed);
-        c->set.seed = (uint32_t)seed;
-        break;
-    default:
-        if (letter >= TED4_SCENE_WAYS)
-            return way(c, letter, text);
-        fputs("ted4scene: see ted4scene -h\n", stderr);
-        status = EXIT_TROUBLE;
+    switch (index) {
+    case OPT_OUTPUT: c->folder = text; return EXIT_FINE;
+    case OPT_FORCE: c->force = 1; return EXIT_FINE;
+    case OPT_VIDEO: o->video = 1; return EXIT_FINE;
+    case OPT_THREADS: return integer(text, 1, 1024, &c->threads);
+    case OPT_SIZE: return size_of(text, o);
+    case OPT_CAMERAS: return integer(text, 1, TED4_RAY_MAX_COUNT, &o->n_train);
+    case OPT_TEST_CAMERAS: return integer(text, 0, TED4_RAY_MAX_COUNT, &o->n_test);
+    case OPT_FRAMES: return integer(text, 1, TED4_RAY_MAX_COUNT, &o->n_frames);
+    case OPT_HOLD: return hold_of(text, &o->hold);
+    case OPT_POSE_ERROR: return real(text, TED4_RAY_MOST_ERROR, &o->pose_error);
+    case OPT_TINT: return real(text, TED4_RAY_MOST_TINT, &o->tint);
+    case OPT_LAYOUT: return layout_of(text, o);
+    case OPT_SEED: return seed_of(text, &o->seed);
+    default: return way(c, index - OPT_WAYS, text);
     }
-    return status;
 }
 
 /* Returns EXIT_FINE, EXIT_TROUBLE, or -1 if -h or -V has already been handled. */
 static int parse(int argc, char **argv, command *c)
 {
-    static const struct option own[] = { { "size", required_argument, NULL, 's' },
-                                         { "cameras", required_argument, NULL, 'c' },
-                                         { "test-cameras", required_argument, NULL, 't' },
-                                         { "frames", required_argument, NULL, 'n' },
-                                         { "hold", required_argument, NULL, 'H' },
-                                         { "pose-error", required_argument, NULL, 'p' },
-                                         { "tint", required_argument, NULL, 'T' },
-                                         { "layout", required_argument, NULL, 'l' },
-                                         { "video", no_argument, NULL, 'v' },
-                                         { "seed", required_argument, NULL, 'r' },
-                                         { "help", no_argument, NULL, 'h' },
-                                         { "version", no_argument, NULL, 'V' } };
-    enum { OWN = sizeof own / sizeof own[0] };
-    struct option longs[OWN + TED4_SCENE_N_WAYS + 1] = { { NULL, 0, NULL, 0 } };
-    int letter;
+    const char *value;
 
-    memcpy(longs, own, sizeof own);
-    memcpy(longs + OWN, ted4_scene_ways, sizeof ted4_scene_ways);
-
-    while ((letter = getopt_long(argc, argv, "o:j:fhV", longs, NULL)) != -1) {
-        if (letter == 'h' || letter == 'V') {
-            if (letter == 'h')
-                help();
-            else
-                puts("ted4scene " TED4_VERSION);
+    memcpy(options + OPT_WAYS, ted4_scene_ways, sizeof ted4_scene_ways);
+    for (int i; (i = ted4_arguments_next(&COMMAND, argc, argv, &value)) != TED4_ARGUMENTS_END;) {
+        if (i == TED4_ARGUMENTS_DONE)
             return -1;
-        }
-        if (option(c, letter, optarg) != EXIT_FINE)
+        if (i == TED4_ARGUMENTS_BAD || set_option(c, i, value) != EXIT_FINE)
             return EXIT_TROUBLE;
     }
     if (optind + 1 != argc)
