@@ -36,3 +36,31 @@ DEPS_PLAYER = clang-19 lld-19 nodejs
 deps-player: deps
 	@$(call INSTALL_DEBIAN,$(DEPS_PLAYER))
 .PHONY: player-wasm player-test player-conformance deps-player
+
+# The page (page/), by esbuild and the packages that player/package-lock.json pins; they lie in the
+# build folder. The licences of what is drawn with come first in player.js.
+NPM     = $W/npm
+ESBUILD = NODE_PATH=$(abspath $(NPM)/node_modules) $(NPM)/node_modules/.bin/esbuild --bundle \
+          --minify --format=iife --target=es2022 --log-level=warning
+PAGE_LICENCES = $(addprefix $(NPM)/node_modules/,@sparkjsdev/spark/LICENSE three/LICENSE \
+                fflate/LICENSE)
+PAGE_SRC = $(wildcard player/page/*.js player/src/*.js player/adapters/*.js)
+player: $(addprefix $W/,index.html style.css player.js ted4.wasm)
+$(NPM)/installed: player/package.json player/package-lock.json
+	@mkdir -p $(@D)
+	cp $^ $(@D)
+	cd $(@D) && npm ci --ignore-scripts --no-audit --no-fund --loglevel=error
+	@touch $@
+$W/index.html $W/style.css: $W/%: player/page/%
+	@mkdir -p $(@D)
+	cp $< $@
+$W/worker.txt: $(PAGE_SRC) $(NPM)/installed
+	$(ESBUILD) player/src/worker.js --outfile=$@
+$W/player.js: $(PAGE_SRC) $W/worker.txt $(NPM)/installed
+	$(ESBUILD) player/page/main.js --loader:.txt=text --outfile=$@.new \
+	    --alias:worker-text=$(abspath $W/worker.txt) --log-override:empty-import-meta=silent
+	{ echo '/*! Spark, three.js, fflate:'; cat $(PAGE_LICENCES); echo '*/'; cat $@.new; } >$@
+	@rm $@.new
+player-html: player
+	node player/export.mjs $W $(FILE) $(OUT)
+.PHONY: player player-html

@@ -1,0 +1,72 @@
+// clock.js - the time that is shown: playing, stepping, looping. position is in frames, from 0 to
+// frames - 1, and may lie between two.
+// SPDX-License-Identifier: BSD-2-Clause
+
+const PARTS = 8; // of a frame, to which times are rounded
+
+export class Clock {
+  frames = 1;
+  rate = 1; // frames per second
+  speed = 1;
+  isLooping = true;
+  isPlaying = false;
+  #position = 0;
+  #last = 0;
+
+  // A new scene, from its start.
+  reset(frames, rate) {
+    Object.assign(this, { frames, rate, isPlaying: false });
+    this.#position = 0;
+  }
+
+  get position() {
+    return Math.min(this.#position, this.frames - 1);
+  }
+
+  seek(position) {
+    this.#position = Math.min(Math.max(position, 0), this.frames - 1);
+  }
+
+  play(now) {
+    if (this.frames === 1) return;
+    if (!this.isLooping && this.position === this.frames - 1) this.#position = 0;
+    this.isPlaying = true;
+    this.#last = now;
+  }
+
+  pause() {
+    this.isPlaying = false;
+  }
+
+  // To the next whole frame, or that many on.
+  step(n) {
+    this.pause();
+    const frame = n > 0 ? Math.floor(this.position) + n : Math.ceil(this.position) + n;
+    this.seek(frame);
+  }
+
+  // now: milliseconds. The last frame is shown as long as the others.
+  advance(now) {
+    if (!this.isPlaying) return;
+    this.#position += (now - this.#last) / 1000 * this.rate * this.speed;
+    this.#last = now;
+    if (this.#position < this.frames) return;
+    if (this.isLooping) {
+      this.#position %= this.frames;
+    } else {
+      this.#position = this.frames - 1;
+      this.pause();
+    }
+  }
+
+  // Of spec 11.1; whole frames are exact.
+  get query() {
+    if (this.frames === 1) return { num: 0, den: 1 };
+    return { num: Math.round(PARTS * this.position), den: PARTS * (this.frames - 1) };
+  }
+
+  // The position of a query.
+  positionOf({ num, den }) {
+    return den === 0 ? this.position : num / den * (this.frames - 1);
+  }
+}

@@ -1,0 +1,132 @@
+// main.js - the page: connects its controls with a Player, and opens what is dropped, chosen,
+// embedded or named by ?file=.
+// SPDX-License-Identifier: BSD-2-Clause
+import workerText from "worker-text";
+import { Ted4Error } from "../src/decoder.js";
+import { bindKeys } from "./keys.js";
+import { showElements, showFile, showMessage, showStatistics } from "./panel.js";
+import { Player } from "./player.js";
+import { bindTimeline } from "./timeline.js";
+
+const WIDE = 640; // pixels in which there is room for the panel beside the scene
+const at = (id) => document.getElementById(id);
+// A page that holds everything (export.mjs) leaves { wasm, scene, name } here.
+const embedded = globalThis.ted4Embedded ?? {};
+
+function startWorker() {
+  return new Worker(URL.createObjectURL(new Blob([workerText], { type: "text/javascript" })));
+}
+
+function explain(name, error) {
+  if (!(error instanceof Ted4Error)) return `${name}: ${error.message}`;
+  const place = error.offset === undefined ? "" : ` at byte ${error.offset}`;
+  return `${name} is refused (${error.verdict}): ${error.id}${place}\n${error.text}`;
+}
+
+const wasm = embedded.wasm ?? new URL("ted4.wasm", document.baseURI).href;
+const player = new Player(at("picture"), startWorker(), wasm,
+  (error) => showMessage(explain(player.file.name, error)));
+
+function showPanel(isShown) {
+  at("panel").hidden = !isShown;
+  at("show-panel").setAttribute("aria-expanded", isShown);
+}
+
+function showOpened() {
+  document.body.classList.add("playing-file");
+  at("timeline").hidden = false;
+  showPanel(innerWidth >= WIDE);
+  showFile(player.file);
+  if (at("sizes").open) showSizes();
+  const { info } = player.file;
+  at("background").value =
+    `#${info.background.map((v) => v.toString(16).padStart(2, "0")).join("")}`;
+  at("camera").max = player.cameras.length;
+  at("camera").value = player.cameras.length > 0 ? 1 : "";
+  at("camera").disabled = player.cameras.length === 0;
+  at("cameras").textContent = player.cameras.length > 0 ? `of ${player.cameras.length}` : "none";
+  timeline.reset();
+}
+
+async function open(name, reading) {
+  showMessage("");
+  try {
+    await player.open(new Uint8Array(await reading), name);
+    showOpened();
+  } catch (error) {
+    showMessage(explain(name, error));
+  }
+}
+
+async function read(address) {
+  const response = await fetch(address);
+  if (!response.ok) throw new Error(`${response.status} ${response.statusText}`);
+  return response.arrayBuffer();
+}
+
+async function showSizes() {
+  if (player.file !== null && at("sizes").open) showElements(await player.bytesByElement());
+}
+
+function bindFiles() {
+  const openFile = (file) => { if (file) open(file.name, file.arrayBuffer()); };
+  at("file").addEventListener("change", () => openFile(at("file").files[0]));
+  addEventListener("dragover", (e) => {
+    e.preventDefault();
+    document.body.classList.add("dropping");
+  });
+  addEventListener("dragleave", (e) => {
+    if (e.relatedTarget === null) document.body.classList.remove("dropping");
+  });
+  addEventListener("drop", (e) => {
+    e.preventDefault();
+    document.body.classList.remove("dropping");
+    openFile(e.dataTransfer.files[0]);
+  });
+}
+
+function bindView() {
+  at("show-panel").addEventListener("click", () => showPanel(at("panel").hidden));
+  at("sizes").addEventListener("toggle", showSizes);
+  at("camera").addEventListener("change", () => {
+    const i = at("camera").valueAsNumber - 1;
+    if (i in player.cameras) player.useCamera(i);
+  });
+  at("looks-around").addEventListener("change", () => {
+    player.navigation.looksAround = at("looks-around").checked;
+  });
+  at("background").addEventListener("input", () => {
+    const { value } = at("background");
+    player.setBackground([1, 3, 5].map((i) => parseInt(value.slice(i, i + 2), 16)));
+  });
+}
+
+// Once a second, the statistics of that second.
+function countPictures() {
+  let before = 0;
+  setInterval(() => {
+    if (player.file === null) return;
+    const { drawn } = player.statistics;
+    showStatistics(player.file, player.statistics, drawn - before);
+    before = drawn;
+  }, 1000);
+}
+
+const timeline = bindTimeline(player.clock);
+bindKeys(player, timeline);
+bindFiles();
+bindView();
+countPictures();
+
+function frame(now) {
+  player.tick(now);
+  timeline.show();
+  requestAnimationFrame(frame);
+}
+requestAnimationFrame(frame);
+
+const address = new URLSearchParams(location.search).get("file");
+if (embedded.scene) open(embedded.name, embedded.scene);
+else if (address) open(address.split("/").pop(), read(address));
+
+globalThis.ted4Player = player; // for scripts of the page

@@ -1,0 +1,70 @@
+// panel.js - what the page says about a file: title, verdict, facts, bytes, statistics.
+// SPDX-License-Identifier: BSD-2-Clause
+
+const at = (id) => document.getElementById(id);
+const count = (n) => n.toLocaleString("en");
+
+function terms(id, rows) {
+  at(id).replaceChildren(...rows.flatMap(([term, text]) => {
+    const dt = document.createElement("dt"), dd = document.createElement("dd");
+    dt.textContent = term;
+    dd.textContent = text;
+    return [dt, dd];
+  }));
+}
+
+function table(id, rows) {
+  at(id).replaceChildren(...rows.map((cells) => {
+    const row = document.createElement("tr");
+    for (const text of cells) row.insertCell().textContent = text;
+    return row;
+  }));
+}
+
+function sceneRows({ bytes, info, meta }) {
+  const said = ["author", "licence", "created"].filter((key) => meta.has(key))
+    .map((key) => [key[0].toUpperCase() + key.slice(1), meta.get(key)]);
+  return [
+    ...said,
+    ["File", `${count(bytes.length)} bytes`],
+    ["Anchors", `${count(info.anchors)}, ${count(info.moving)} move`],
+    ["Gaussians", count(info.gaussians)],
+    ["Frames", `${count(info.frames)}, ${info.rate} a second`],
+    ["Motion", info.motion],
+    ["Activation", info.activation ? "yes" : "no"],
+    ["Depends on view", info.view],
+    ["Level", info.level],
+    ["Hash", info.hash],
+  ];
+}
+
+export function showFile(file) {
+  at("title").textContent = file.meta.get("title") ?? file.name;
+  document.title = `${at("title").textContent} - TED4 player`;
+  at("verdict").textContent = "Valid: strict decoding, hash of the scene checked.";
+  terms("facts", sceneRows(file));
+  table("by-chunk", file.chunks.map(({ type, count: n, bytes }) =>
+    [n > 1 ? `${type} (${n})` : type, count(bytes)]));
+  table("by-element", []);
+}
+
+export function showElements(rows) {
+  table("by-element", rows.map(({ chunk, element, bytes }) =>
+    [`${chunk} ${element}`, count(bytes)]));
+}
+
+export function showStatistics({ milliseconds, info }, { evaluate, firstPicture }, perSecond) {
+  terms("statistics", [
+    ["Decoding", `${milliseconds.toFixed(0)} ms`],
+    ["First picture", `${firstPicture.toFixed(0)} ms`],
+    ["Evaluating a time", `${evaluate.toFixed(1)} ms`],
+    ["Gaussians", count(info.gaussians)],
+    ["Pictures a second", perSecond.toFixed(0)],
+  ]);
+}
+
+// Says in the page why a file is refused; "": nothing is wrong.
+export function showMessage(text) {
+  at("message").textContent = text;
+  at("message").hidden = text === "";
+}

@@ -1,0 +1,153 @@
+// player.js - a file on the screen: decodes and evaluates in a worker, and keeps the picture at the
+// time and the camera that are wanted now. It knows nothing of the page around its canvas.
+// SPDX-License-Identifier: BSD-2-Clause
+import { Ted4Client } from "../src/client.js";
+import { centreOf, fitted } from "./camera.js";
+import { bytesByType, camerasOf, chunksOf, metaOf } from "./chunks.js";
+import { Clock } from "./clock.js";
+import { Navigation } from "./navigation.js";
+import { depthAhead, startCamera } from "./start.js";
+import { View } from "./view.js";
+
+const NEAREST = 0.02; // in units of the scene (I.2)
+const UP = [0, -1, 0]; // where a file does not say
+
+export class Player {
+  clock = new Clock();
+  navigation;
+  file = null; // of the open file: { name, bytes, info, chunks, meta, cameras, milliseconds }
+  statistics = { evaluate: 0, drawn: 0, firstPicture: 0 };
+  #canvas;
+  #view;
+  #client;
+  #ready;
+  #scene = null;
+  #shown = null; // what the Gaussians on the screen were evaluated for
+  #pending = null; // the evaluation under way
+  #pose = null; // the camera that the view was given
+  #opened = 0;
+  #last = 0;
+  #failed;
+
+  // worker: runs src/worker.js; wasm: the module's bytes, or its address; failed(error) hears of
+  // evaluations that fail.
+  constructor(canvas, worker, wasm, failed) {
+    this.#canvas = canvas;
+    this.#failed = failed;
+    this.#view = new View(canvas);
+    this.navigation = new Navigation(canvas);
+    this.#client = new Ted4Client(worker);
+    this.#ready = this.#client.load(wasm);
+  }
+
+  // Shows a file from its start. Rejects with Ted4Error; then what was there before stays.
+  async open(bytes, name) {
+    const opened = performance.now();
+    await this.#ready;
+    const scene = await this.#client.open(bytes);
+    const chunks = chunksOf(bytes);
+    const first = await scene.gaussians(0, 1, [0, 0, 0]);
+    await this.#pending;
+    this.#scene?.close();
+    this.#scene = scene;
+    this.#opened = opened;
+    this.statistics.firstPicture = 0;
+    this.file = {
+      name, bytes, info: scene.info, chunks: bytesByType(chunks), meta: metaOf(chunks),
+      cameras: camerasOf(chunks), milliseconds: scene.milliseconds,
+    };
+    this.clock.reset(scene.info.frames, scene.info.rate);
+    this.#view.reset(first.n);
+    this.#view.setBackground(scene.info.background);
+    this.#start(first);
+  }
+
+  // From the file's first camera, or from where most of the scene can be seen.
+  #start(first) {
+    const { cameras } = this.file;
+    const start = startCamera(first, cameras.up ?? UP);
+    this.navigation.up = cameras.up ?? UP;
+    this.navigation.camera = start.camera;
+    this.navigation.distance = start.distance;
+    this.#shown = null;
+    if (this.cameras.length > 0) {
+      this.useCamera(0);
+      this.navigation.distance = depthAhead(this.cameras[0], first);
+    }
+  }
+
+  // The file's cameras, then those of its path.
+  get cameras() {
+    return this.file === null ? [] : [...this.file.cameras.cameras, ...this.file.cameras.path];
+  }
+
+  // Looks through a camera of the file, at its time.
+  useCamera(i) {
+    const camera = this.cameras[i];
+    this.navigation.camera = camera;
+    this.clock.seek(this.clock.positionOf(camera));
+  }
+
+  // The bytes of the file by element. Slow: the file is decoded again.
+  async bytesByElement() {
+    const scene = await this.#client.open(this.file.bytes, { budget: true });
+    scene.close();
+    return scene.bytesByElement;
+  }
+
+  setBackground(rgb) {
+    this.#view.setBackground(rgb);
+  }
+
+  // To be called for every frame of the display. Returns whether a picture was drawn.
+  tick(now) {
+    this.clock.advance(now);
+    this.navigation.fly((now - this.#last) / 1000);
+    this.#last = now;
+    if (this.file === null) return this.#view.draw();
+    this.#followCamera();
+    this.#evaluate();
+    const isDrawn = this.#view.draw();
+    if (isDrawn) this.statistics.drawn++;
+    if (this.statistics.firstPicture === 0 && this.isSettled)
+      this.statistics.firstPicture = performance.now() - this.#opened;
+    return isDrawn;
+  }
+
+  #followCamera() {
+    const ratio = globalThis.devicePixelRatio ?? 1;
+    const width = Math.max(1, Math.round(this.#canvas.clientWidth * ratio));
+    const height = Math.max(1, Math.round(this.#canvas.clientHeight * ratio));
+    const { camera } = this.navigation;
+    const before = this.#pose;
+    if (before?.camera === camera && before.width === width && before.height === height) return;
+    if (before?.width !== width || before.height !== height) this.#view.resize(width, height);
+    this.#pose = { camera, width, height };
+    this.#view.setCamera(fitted(camera, width, height), NEAREST * 2 ** this.file.info.exponent);
+  }
+
+  // What the Gaussians depend on: the time, and the camera's place if colours depend on it.
+  #wanted() {
+    const { num, den } = this.clock.query;
+    const centre = this.file.info.view === "none" ? [0, 0, 0] : centreOf(this.navigation.camera);
+    return { num, den, centre, key: [num, den, ...centre].join() };
+  }
+
+  // One evaluation at a time; the next one is for what is wanted then.
+  #evaluate() {
+    if (this.#pending !== null) return;
+    const wanted = this.#wanted(), scene = this.#scene;
+    if (this.#shown === wanted.key) return;
+    this.#pending = scene.gaussians(wanted.num, wanted.den, wanted.centre).then((g) => {
+      this.#shown = wanted.key;
+      this.statistics.evaluate = g.milliseconds;
+      this.#view.setGaussians(g);
+    }).catch(this.#failed).finally(() => { this.#pending = null; });
+  }
+
+  // Whether the wanted time and camera are on the screen.
+  get isSettled() {
+    return this.file !== null && this.#pending === null && this.#shown === this.#wanted().key &&
+      this.#view.isSettled;
+  }
+}
