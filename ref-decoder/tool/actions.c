@@ -99,12 +99,30 @@ static int check_frames(const ted4_session *s)
     return TED4_EXIT_FINE;
 }
 
+/* A camera centre changes nothing in formats whose harmonics hold the colours of all views, unless
+ * the shapes depend on the view as well. */
+static int check_centre(const ted4_session *s)
+{
+    const ted4_settings *const set = s->set;
+
+    if (!set->has_centre || set->hash || s->info.view != TED4_VIEW_COLOUR ||
+        set->format->max_sh_degree < 0)
+        return TED4_EXIT_FINE;
+    fprintf(stderr,
+            "%s: --camera-centre: has no effect: spherical harmonics hold the colours of all views;"
+            " .raw holds those of one\n",
+            PROGRAM);
+    return TED4_EXIT_TOOL;
+}
+
 int ted4_action_check(const ted4_session *s)
 {
     const ted4_settings *const set = s->set;
     const size_t n_files = set->output != NULL ? count_times(s) : 0;
     int code = check_frames(s);
 
+    if (code == TED4_EXIT_FINE)
+        code = check_centre(s);
     if (code == TED4_EXIT_FINE && n_files > 1 && ted4_pattern_count(set->output) == 0)
         code = failed_file(set->output, "several frames need a %d in the name");
     if (code == TED4_EXIT_FINE && s->cameras.n > 1 && ted4_pattern_count(set->render) == 0)
@@ -226,18 +244,24 @@ static int export_time(ted4_session *s, const ted4_sampler *how, ted4_time t, ui
     return code;
 }
 
+/* The degree of the export: 0 if none was requested, -1 if the format has no harmonics. */
+static int sh_degree(const ted4_settings *set)
+{
+    const int wanted = set->sh_degree >= 0 ? set->sh_degree : 0;
+
+    return wanted < set->format->max_sh_degree ? wanted : set->format->max_sh_degree;
+}
+
 int ted4_action_export(ted4_session *s)
 {
     const ted4_settings *const set = s->set;
     const size_t n = count_times(s);
     ted4_sampler how = { s->recon,       &s->info,
                          &s->parallel,   { set->centre[0], set->centre[1], set->centre[2] },
-                         set->sh_degree, set->keep_all };
+                         sh_degree(set), set->keep_all };
     double worst_rms = 0.0;
     int code = TED4_EXIT_FINE;
 
-    if (how.sh_degree > set->format->max_sh_degree)
-        how.sh_degree = set->format->max_sh_degree;
     announce_export(s, &how);
     for (size_t i = 0; i < n && code == TED4_EXIT_FINE; i++) {
         uint32_t number;

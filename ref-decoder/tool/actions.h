@@ -8,22 +8,8 @@
 #include <jansson.h>
 
 #include "camera_list.h"
-#include "export.h"
+#include "settings.h"
 #include "ted4.h"
-#include "times.h"
-
-typedef struct {
-    const char *input;
-    const char *output, *render, *cameras; /* patterns, and a file name; NULL: not requested */
-    const ted4_format *format;             /* of output */
-    ted4_range range;
-    ted4_time time;
-    int has_range, has_time;
-    float centre[3];
-    int sh_degree, threads;
-    int64_t max_memory, max_work; /* limits for decoding and for a query; 0: not given */
-    int keep_all, hash, test, lenient, trace, force, json, quiet, verbose;
-} ted4_settings;
 
 /* One run of the program. The functions below return an exit code (cli.h) and print their own error
  * messages. */

@@ -2,8 +2,6 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "export.h"
 
-#include <string.h>
-
 #include "output.h"
 
 const ted4_format *const ted4_formats[] = { &ted4_format_ply, &ted4_format_splat, &ted4_format_glb,
@@ -11,14 +9,9 @@ const ted4_format *const ted4_formats[] = { &ted4_format_ply, &ted4_format_splat
 
 const ted4_format *ted4_format_find(const char *path)
 {
-    const size_t n = strlen(path);
-
-    for (size_t i = 0; ted4_formats[i] != NULL; i++) {
-        const size_t m = strlen(ted4_formats[i]->suffix);
-
-        if (n > m && strcmp(path + n - m, ted4_formats[i]->suffix) == 0)
+    for (size_t i = 0; ted4_formats[i] != NULL; i++)
+        if (ted4_has_suffix(path, ted4_formats[i]->suffix))
             return ted4_formats[i];
-    }
     return NULL;
 }
 

@@ -5,6 +5,7 @@
 #include <errno.h>
 #include <inttypes.h>
 #include <string.h>
+#include <strings.h>
 #include <unistd.h>
 
 /* Makes the temporary name for path. Returns 0, or -1 with errno set if it is too long. */
@@ -51,6 +52,13 @@ int ted4_output_close(ted4_output *o)
     remove(o->temporary);
     errno = why;
     return -1;
+}
+
+int ted4_has_suffix(const char *path, const char *suffix)
+{
+    const size_t n = strlen(path), m = strlen(suffix);
+
+    return n > m && strcasecmp(path + n - m, suffix) == 0;
 }
 
 /* Finds the conversion. Returns the number of conversions (0 or 1), or -1 if the pattern is

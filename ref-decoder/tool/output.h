@@ -23,6 +23,9 @@ int ted4_output_close(ted4_output *o);
 /* Closes and removes the temporary file. errno is preserved. */
 void ted4_output_cancel(ted4_output *o);
 
+/* Returns 1 if path ends in suffix, in letters of either case, with something before it. */
+int ted4_has_suffix(const char *path, const char *suffix);
+
 /* A pattern is a file name with at most one %d, %Nd or %0Nd (N up to 9) and no other percent sign.
  * Returns the number of conversions (0 or 1), or -1 if the text is not a pattern. */
 int ted4_pattern_count(const char *pattern);

@@ -13,6 +13,7 @@
 #include "contract.h"
 #include "threads.h"
 #include "output.h"
+#include "settings.h"
 #include "sh.h"
 
 enum {
@@ -49,7 +50,9 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
                      "Default: all" },
     [OPT_TIME] = { 0, "time", "T", "one time from 0 to 1 instead, as 0.25 or 7/30" },
     [OPT_CENTRE] = { 0, "camera-centre", "X,Y,Z",
-                     "where --hash and -o look from, in world coordinates. Default 0,0,0" },
+                     "where --hash and -o look from, in world coordinates, if spherical harmonics "
+                     "do not "
+                     "stand for all views. Default 0,0,0" },
     [OPT_SH_DEGREE] = { 0, "sh-degree", "N",
                         "spherical harmonics that stand for view-dependent colours, 0 to 3. "
                         "Default 0" },
@@ -140,13 +143,16 @@ static int set_option(ted4_settings *s, int option, const char *value)
         s->has_time = 1;
         return ted4_time_parse(value, &s->time) != 0 ? usage_error("--time", value) : 0;
     case OPT_CENTRE:
+        s->has_centre = 1;
         return ted4_arguments_floats(value, 3, s->centre) != 0
                    ? usage_error("--camera-centre", value)
                    : 0;
     case OPT_SH_DEGREE: return set_number("--sh-degree", value, TED4_SH_MAX_DEGREE, &s->sh_degree);
     case OPT_RENDER:
         s->render = value;
-        return ted4_pattern_count(value) < 0 ? usage_error("bad file name", value) : 0;
+        return !ted4_has_suffix(value, ".png") ? usage_error(value, "--render writes .png only")
+               : ted4_pattern_count(value) < 0 ? usage_error("bad file name", value)
+                                               : 0;
     case OPT_CAMERA: s->cameras = value; return 0;
     case OPT_MEMORY: return set_bound("--max-memory", value, &s->max_memory);
     case OPT_WORK: return set_bound("--max-work", value, &s->max_work);
@@ -163,25 +169,12 @@ static int set_option(ted4_settings *s, int option, const char *value)
     return 0;
 }
 
-static int check_settings(const ted4_settings *s)
-{
-    if (s->has_range && s->has_time)
-        return usage_error("--frames and --time", "only one of them");
-    if ((s->render != NULL) != (s->cameras != NULL))
-        return usage_error("--render and --camera", "both or none");
-    if (s->test && (s->output != NULL || s->render != NULL))
-        return usage_error("--test", "writes no file");
-    if (s->trace && s->json)
-        return usage_error("--trace and --json", "only one of them");
-    return 0;
-}
-
 /* Returns -1 if the program should continue, else its exit code. */
 static int parse(ted4_settings *s, int argc, char **argv)
 {
     const char *value;
 
-    *s = (ted4_settings) { .range = { 0, UINT32_MAX, 1 } };
+    *s = (ted4_settings) { .range = { 0, UINT32_MAX, 1 }, .sh_degree = -1 };
     for (int i; (i = ted4_arguments_next(&COMMAND, argc, argv, &value)) != TED4_ARGUMENTS_END;) {
         if (i == TED4_ARGUMENTS_BAD)
             return TED4_EXIT_TOOL;
@@ -195,7 +188,7 @@ static int parse(ted4_settings *s, int argc, char **argv)
     if (optind + 1 != argc)
         return usage_error("arguments", "exactly one file");
     s->input = argv[optind];
-    const int code = check_settings(s);
+    const int code = ted4_settings_check(s);
 
     return code != 0 ? code : -1;
 }

@@ -8,6 +8,7 @@
 
 #include "ted4.h"
 #include "tool/arguments.h"
+#include "tool/output.h"
 #include "tool/similar.h"
 #include "tool/threads.h"
 
@@ -143,6 +144,13 @@ static int complain(const char *text)
 static int bad_value(int option, const char *value)
 {
     fprintf(stderr, "ted4enc: --%s: bad value %s\n", OPTIONS[option].name, value);
+    return TED4_REQUEST_BAD;
+}
+
+/* A .ted4 file is written to its end and then renamed, so that standard output cannot take it. */
+static int bad_output(const char *path)
+{
+    fprintf(stderr, "ted4enc: -o %s: expected a file name that ends in .ted4\n", path);
     return TED4_REQUEST_BAD;
 }
 
@@ -351,6 +359,8 @@ int ted4_request_parse(ted4_request *r, int argc, char **argv)
     r->scene = argv[optind];
     if (r->out == NULL && !r->check)
         return complain("-o FILE.ted4 expected");
+    if (r->out != NULL && !ted4_has_suffix(r->out, ".ted4"))
+        return bad_output(r->out);
     if (r->resume && r->checkpoint == NULL)
         return complain("--resume needs --checkpoint FILE");
     return apply(r, &p);

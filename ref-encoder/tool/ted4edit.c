@@ -13,6 +13,7 @@
 #include "ted4.h"
 #include "tool/arguments.h"
 #include "tool/cli.h"
+#include "tool/output.h"
 
 enum {
     OPT_OUTPUT,
@@ -175,6 +176,8 @@ static int parse(settings *s, int argc, char **argv)
     }
     if (optind + 1 != argc || s->output == NULL)
         return failed("arguments", "expected FILE.ted4 -o FILE.ted4 (see --help)");
+    if (!ted4_has_suffix(s->output, ".ted4"))
+        return failed(s->output, "expected a file name that ends in .ted4");
     s->input = argv[optind];
     return -1;
 }

@@ -24,6 +24,7 @@
 #include "ted4.h"
 #include "tool/arguments.h"
 #include "tool/cli.h"
+#include "tool/output.h"
 #include "teller.h"
 #include "tool/threads.h"
 
@@ -199,6 +200,8 @@ static int parse(settings *s, int argc, char **argv)
         return failed("arguments", "a file and a scene folder expected (see --help)");
     s->input = argv[optind];
     s->scene = argv[optind + 1];
+    if (s->sheet != NULL && !ted4_has_suffix(s->sheet, ".png"))
+        return failed(s->sheet, "--sheet writes .png only");
     if (s->sheet != NULL && !s->force && access(s->sheet, F_OK) == 0)
         return failed(s->sheet, "exists; -f overwrites");
     return -1;

@@ -238,7 +238,7 @@ static inline void run_calmly(const char *arguments)
 {
     char words[512];
 
-    snprintf(words, sizeof words, "-o out/x --checkpoint-every 60 %s", arguments);
+    snprintf(words, sizeof words, "-o out/x.ted4 --checkpoint-every 60 %s", arguments);
     if (run(words, 0) != 0)
         expect_words("nothing at all");
 }
@@ -247,7 +247,7 @@ static inline void run_calmly(const char *arguments)
 static inline void resume_to_reference(void)
 {
     run_calmly("--checkpoint out/c --resume");
-    expect_same("out/x", &reference.file);
+    expect_same("out/x.ted4", &reference.file);
     gone("out/c");
 }
 
@@ -255,7 +255,7 @@ static inline void resume_to_reference(void)
 static inline void make_checkpoint(void)
 {
     run_calmly("--stage1 out/s");
-    gone("out/x");
+    gone("out/x.ted4");
     must(rename(tiny_path(&folder, "out/s"), tiny_path(&folder, "out/c")) == 0, "out/c");
     expect_files("c");
 }
@@ -269,9 +269,9 @@ static inline outcome make_outcome(const char *options)
 
     snprintf(words, sizeof words, "--log out/l %s", options);
     run_calmly(words);
-    r.file = read_file("out/x");
+    r.file = read_file("out/x.ted4");
     read_text("out/l", r.log, sizeof r.log);
-    gone("out/x");
+    gone("out/x.ted4");
     gone("out/l");
     return r;
 }
@@ -283,7 +283,7 @@ static inline int set_up(void **state)
     if (build == NULL)
         return 0;
     folder = tiny_new();
-    (void)tiny_path(&folder, "out/x"); /* creates the folder */
+    (void)tiny_path(&folder, "out/x.ted4"); /* creates the folder */
 
     tiny_folder scene;
 
@@ -312,7 +312,7 @@ static inline void begin_test(void)
         skip();
     }
     tiny_remove_path(tiny_path(&folder, "out"));
-    (void)tiny_path(&folder, "out/x");
+    (void)tiny_path(&folder, "out/x.ted4");
 }
 
 /* The options that usual[] gives. */

@@ -115,7 +115,7 @@ static int setup(void **state)
     if (build == NULL)
         return 0;
     folder = tiny_new();
-    (void)tiny_path(&folder, "out/x");
+    (void)tiny_path(&folder, "out/x.ted4");
     scene("good", "", NULL);
     return 0;
 }
@@ -275,14 +275,18 @@ static void test_output(void **state)
     need_program();
     memset(name, 'n', sizeof name - 1);
     name[sizeof name - 1] = 0;
-    snprintf(text, sizeof text, "good -o out/%s" QUICK, name);
+    snprintf(text, sizeof text, "good -o out/%s.ted4" QUICK, name);
     refuse(text, "cannot be written");
     refuse("good -o good/0.png/x.ted4" QUICK, "cannot be written");
     refuse("good -o nowhere/x.ted4" QUICK, "cannot be written");
     refuse("good -o /proc/x.ted4" QUICK, "cannot be written");
-    refuse("good -f -o /proc/version" QUICK, "cannot be written");
-    refuse("good -f -o out" QUICK, "is a folder");
-    refuse("good -o ''" QUICK, "name is empty");
+    refuse("good -f -o /proc/version" QUICK, "-o /proc/version: expected a file name that ends in");
+    refuse("good -o -" QUICK, "-o -: expected a file name that ends in .ted4");
+    refuse("good -o out/x.mp4" QUICK, "-o out/x.mp4: expected a file name that ends in .ted4");
+    refuse("good -o ''" QUICK, "expected a file name that ends in .ted4");
+    (void)tiny_path(&folder, "folder.ted4/x");
+    refuse("good -f -o folder.ted4" QUICK, "is a folder");
+    refuse("good --checkpoint ''" OUT QUICK, "name is empty");
     refuse("good --checkpoint nowhere/c" OUT QUICK, "nowhere/c: cannot be written");
     refuse("good --log nowhere/l" OUT QUICK, "nowhere/l");
     tiny_text(&folder, "damaged", "not a checkpoint");

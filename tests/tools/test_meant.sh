@@ -13,16 +13,16 @@ no_hint() { expect "$@"; ! grep -q 'did you mean' "$out/said" && ok "$1_no_hint"
 
 expect set_left_out 3 \
     'laambda=1: expected name=value with a name from --help; did you mean lambda?' "$enc" x \
-    -o "$out/x" --set laambda=1
-expect set_turned 3 'did you mean stage2?' "$enc" x -o "$out/x" --set stgae2=1
-no_hint set_far 3 'zzz: expected name=value' "$enc" x -o "$out/x" --set zzz
-no_hint set_value 3 'lambda=11: expected a number' "$enc" x -o "$out/x" --set lambda=11
-expect preset 3 'or paper; did you mean medium?' "$enc" x -o "$out/x" --preset medum
-no_hint preset_far 3 'or paper' "$enc" x -o "$out/x" --preset best
-expect long_option 3 'did you mean --checkpoint?' "$enc" x -o "$out/x" --chekpoint=c
+    -o "$out/x.ted4" --set laambda=1
+expect set_turned 3 'did you mean stage2?' "$enc" x -o "$out/x.ted4" --set stgae2=1
+no_hint set_far 3 'zzz: expected name=value' "$enc" x -o "$out/x.ted4" --set zzz
+no_hint set_value 3 'lambda=11: expected a number' "$enc" x -o "$out/x.ted4" --set lambda=11
+expect preset 3 'or paper; did you mean medium?' "$enc" x -o "$out/x.ted4" --preset medum
+no_hint preset_far 3 'or paper' "$enc" x -o "$out/x.ted4" --preset best
+expect long_option 3 'did you mean --checkpoint?' "$enc" x -o "$out/x.ted4" --chekpoint=c
 expect decoder 3 'did you mean --hash?' "$TED4_BUILD/ted4dec" x --hsah
-no_hint argument 3 'requires an argument' "$enc" x -o "$out/x" --checkpoint
-no_hint letter 3 'invalid option' "$enc" x -o "$out/x" -Z
+no_hint argument 3 'requires an argument' "$enc" x -o "$out/x.ted4" --checkpoint
+no_hint letter 3 'invalid option' "$enc" x -o "$out/x.ted4" -Z
 
 small="--preset draft --iterations 60,40 --seed 1 -j 1 -q --set init_anchors=100
     --set max_anchors=150 --set offsets=4 --set feature=8 --set deform_width=8 --set head_width=12
@@ -31,9 +31,9 @@ small="--preset draft --iterations 60,40 --seed 1 -j 1 -q --set init_anchors=100
     -j 1 2>/dev/null
 "$TED4_BUILD/ted4scene" pop -o "$out/other" --size 32x24 --frames 4 --cameras 5 --test-cameras 1 \
     -j 1 --seed 2 2>/dev/null
-"$enc" "$out/scene" -o "$out/x" $small || fail encode "status $?"
+"$enc" "$out/scene" -o "$out/x.ted4" $small || fail encode "status $?"
 differs() { name=$1 text=$2 scene=$3; shift 3;
-    expect "$name" 3 "with these options: $text" "$enc" "$out/$scene" -o "$out/x" $small \
+    expect "$name" 3 "with these options: $text" "$enc" "$out/$scene" -o "$out/x.ted4" $small \
     --resume "$@"; }
 differs value 'its lambda is 0.002, and 0.004 is asked for' scene --lambda 0.004
 differs first_of_two 'its feature is 8, and 12 is asked for' scene --set feature=12 --set slices=4
@@ -41,5 +41,5 @@ differs seed 'its seed is 1, and 7 is asked for' scene --seed 7
 differs size 'it is of other pictures' scene --downscale 2
 differs times 'it is of 24 pictures, and there are 12' scene --max-frames 2
 differs scene 'it is of other pictures' other
-"$enc" "$out/scene" -o "$out/x" $small --resume && ok same || fail same "status $?"
+"$enc" "$out/scene" -o "$out/x.ted4" $small --resume && ok same || fail same "status $?"
 exit $bad

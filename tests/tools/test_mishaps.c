@@ -48,8 +48,8 @@ static void kill_again(const char *options, const outcome *want, int enough)
     char arguments[256];
 
     print_message("seed %llu\n", (unsigned long long)seed);
-    snprintf(arguments, sizeof arguments, "-o out/x --checkpoint out/c --log out/l --resume %s",
-             options);
+    snprintf(arguments, sizeof arguments,
+             "-o out/x.ted4 --checkpoint out/c --log out/l --resume %s", options);
     for (int life = 0; killed < enough && life < MOST_LIVES; life++) {
         const pid_t child = start(arguments, 0);
 
@@ -58,7 +58,7 @@ static void kill_again(const char *options, const outcome *want, int enough)
         const int status = finish(child);
         remove_leftovers(child);
         if (status == 0) {
-            expect_same("out/x", &want->file);
+            expect_same("out/x.ted4", &want->file);
             expect_log("out/l", want->log);
             gone("out/c");
             (void)is_new(&last);
@@ -88,7 +88,7 @@ static void expect_survival(const char *options, int kills, const char *that)
     kill_again(options, &want, kills);
     snprintf(arguments, sizeof arguments, "--checkpoint out/c --log out/l --resume %s", options);
     run_calmly(arguments);
-    expect_same("out/x", &want.file);
+    expect_same("out/x.ted4", &want.file);
     expect_log("out/l", want.log);
     gone("out/c");
     free(want.file.bytes);
@@ -118,7 +118,7 @@ static void test_full_checkpoint(void **state)
 
     ball_file before = read_file("out/c"), after;
 
-    assert_int_equal(run("-o out/x --checkpoint out/c --resume", 20000), 3);
+    assert_int_equal(run("-o out/x.ted4 --checkpoint out/c --resume", 20000), 3);
     expect_words("out/c: File too large");
     expect_files("c");
     after = read_file("out/c");
@@ -132,10 +132,10 @@ static void test_full_output(void **state)
 {
     (void)state;
     begin_test();
-    assert_int_equal(run("-o out/x", 1000), 3);
-    expect_words("out/x: File too large");
+    assert_int_equal(run("-o out/x.ted4", 1000), 3);
+    expect_words("out/x.ted4: File too large");
     expect_files("");
-    assert_int_equal(run("-o out/x --stage1 out/s", 1000), 3);
+    assert_int_equal(run("-o out/x.ted4 --stage1 out/s", 1000), 3);
     expect_words("out/s: File too large");
     expect_files("");
 }
@@ -148,7 +148,7 @@ static void test_full_log(void **state)
 
     (void)state;
     begin_test();
-    assert_int_equal(run("-o out/x --log out/l", (rlim_t)(end - reference.log) + 200), 3);
+    assert_int_equal(run("-o out/x.ted4 --log out/l", (rlim_t)(end - reference.log) + 200), 3);
     expect_words("out/l: ");
     expect_files("l");
     read_text("out/l", text, sizeof text);
@@ -156,7 +156,7 @@ static void test_full_log(void **state)
     assert_string_equal(strchr(text, '\n'), "\n");
     gone("out/l");
     if (access("/dev/full", W_OK) == 0) {
-        assert_int_equal(run("-o out/x --log /dev/full", 0), 3);
+        assert_int_equal(run("-o out/x.ted4 --log /dev/full", 0), 3);
         expect_words("/dev/full: No space left on device");
         expect_files("");
     }
@@ -220,14 +220,14 @@ static void test_full_stdout(void **state)
     assert_true(out >= 0);
     assert_true(full >= 0);
     assert_true(dup2(full, STDOUT_FILENO) >= 0);
-    const int status = run("-o out/x --json", 0), checked = run("--check", 0);
+    const int status = run("-o out/x.ted4 --json", 0), checked = run("--check", 0);
     assert_true(dup2(out, STDOUT_FILENO) >= 0);
     close(out);
     close(full);
     assert_int_equal(status, 3);
     assert_int_equal(checked, 3);
     expect_words("standard output cannot be written");
-    gone("out/x");
+    gone("out/x.ted4");
 }
 
 int main(void)

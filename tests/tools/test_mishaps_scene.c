@@ -42,7 +42,7 @@ static void open_gate(const gate *g)
 /* Starts a run that waits at the pipe, and waits until it has written a checkpoint. */
 static pid_t start_until_checkpoint(void)
 {
-    const pid_t child = start("-o out/x --checkpoint out/c --log gate", 0);
+    const pid_t child = start("-o out/x.ted4 --checkpoint out/c --log gate", 0);
     int status;
 
     while (!is_there("out/c")) {
@@ -112,13 +112,13 @@ static void test_other_scene(void **state)
     make_checkpoint();
     whole = read_file(name);
     exchange(tiny_path(&folder, name));
-    assert_int_equal(run("-o out/x --checkpoint out/c --resume", 0), 3);
+    assert_int_equal(run("-o out/x.ted4 --checkpoint out/c --resume", 0), 3);
     expect_words("out/c: not a checkpoint of this scene");
     tiny_bytes(&folder, name, whole.bytes, whole.size);
     free(whole.bytes);
-    assert_int_equal(run("-o out/x --checkpoint out/c --resume --downscale 2", 0), 3);
+    assert_int_equal(run("-o out/x.ted4 --checkpoint out/c --resume --downscale 2", 0), 3);
     expect_words("out/c: not a checkpoint of this scene");
-    assert_int_equal(run("-o out/x --checkpoint out/c --resume --max-frames 3", 0), 3);
+    assert_int_equal(run("-o out/x.ted4 --checkpoint out/c --resume --max-frames 3", 0), 3);
     expect_words("out/c: not a checkpoint of this scene");
     resume_to_reference();
 }
@@ -149,7 +149,7 @@ static void test_not_finite(void **state)
     good = read_file("out/c");
     poison("out/c");
     bad = read_file("out/c");
-    assert_int_equal(run("-o out/x --checkpoint out/c --resume", 0), 3);
+    assert_int_equal(run("-o out/x.ted4 --checkpoint out/c --resume", 0), 3);
     expect_words("not finite at step 700");
     expect_files("c");
     after = read_file("out/c");

@@ -108,7 +108,7 @@ static void make_checkpoint_and_log(char log[MOST_LOG])
     run_calmly("--stage1 out/s --log out/l");
     read_text("out/l", log, MOST_LOG);
     gone("out/l");
-    gone("out/x");
+    gone("out/x.ted4");
     must(rename(tiny_path(&folder, "out/s"), tiny_path(&folder, "out/c")) == 0, "out/c");
     expect_files("c");
 }
@@ -126,7 +126,7 @@ static void test_log_goes_on(void **state)
     tiny_text(&folder, "out/l", text);
     run_calmly("--checkpoint out/c --resume --log out/l");
     expect_log("out/l", reference.log);
-    expect_same("out/x", &reference.file);
+    expect_same("out/x.ted4", &reference.file);
     gone("out/c");
     expect_files("");
 }
@@ -148,7 +148,7 @@ static void test_log_before_rollback(void **state)
     tiny_text(&folder, "out/l", text);
     run_calmly("--checkpoint out/c --resume --log out/l");
     expect_log("out/l", reference.log);
-    expect_same("out/x", &reference.file);
+    expect_same("out/x.ted4", &reference.file);
 }
 
 /* Makes a checkpoint of step 300 with a value that is not finite; if good is set, with the state of
@@ -169,7 +169,7 @@ static void poison(int good)
 /* Resumes a run from out/c, and kills it after its log has lines of steps after the rollback. */
 static void kill_after_rollback(void)
 {
-    const pid_t child = start("-o out/x --checkpoint out/c --resume --log out/l", 0);
+    const pid_t child = start("-o out/x.ted4 --checkpoint out/c --resume --log out/l", 0);
     char text[MOST_LOG] = "";
 
     for (int i = 0; i < 60000 && strstr(text, "\"step\":500") == NULL; i++) {
@@ -200,22 +200,22 @@ static void test_rollback(void **state)
                      "offset\",\"anchor\":5,\"factor\":0.5}\n{\"step\":500,\"stage\":\"1\","),
         text);
     assert_non_null(strstr(strchr(text, '\n'), "\"rollbacks\":1,"));
-    first = read_file("out/x");
-    gone("out/x");
+    first = read_file("out/x.ted4");
+    gone("out/x.ted4");
     gone("out/l");
 
     /* Killed afterwards: the same file results, and the log still records the rollback. */
     poison(1);
     kill_after_rollback();
     run_calmly("--checkpoint out/c --resume --log out/l");
-    second = read_file("out/x");
+    second = read_file("out/x.ted4");
     ball_check_same(&first, &second);
     expect_log("out/l", text);
     free(first.bytes);
     free(second.bytes);
 
     poison(0);
-    assert_int_equal(run("-o out/y --checkpoint out/c --resume --log out/l", 0), 3);
+    assert_int_equal(run("-o out/y.ted4 --checkpoint out/c --resume --log out/l", 0), 3);
     expect_words(
         "value of offset of anchor 5 is not finite at step 300; there is no good state before it");
     read_text("out/l", text, sizeof text);
@@ -299,7 +299,7 @@ static void test_wrong_log(void **state)
     (void)state;
     begin_test();
     tiny_text(&folder, "out/l", "dear diary\n");
-    assert_int_equal(run("-o out/x --log out/l --checkpoint out/c --resume", 0), 3);
+    assert_int_equal(run("-o out/x.ted4 --log out/l --checkpoint out/c --resume", 0), 3);
     expect_words("out/l: there, but not a log of ted4enc");
     read_text("out/l", text, sizeof text);
     assert_string_equal(text, "dear diary\n");

@@ -9,7 +9,7 @@
 static const char *const options[] = { "ted4enc",
                                        "scene",
                                        "-o",
-                                       "out/x",
+                                       "out/x.ted4",
                                        "-f",
                                        "-j1",
                                        "--preset",
@@ -142,7 +142,7 @@ static void stop_at(const moment *m, int signal, const ball_file *want)
                                 &at, &held) != 2)
         fail_msg("said \"%s\"", text);
     assert_true(held <= at || m->logged == NULL);
-    assert_false(is_there("out/x"));
+    assert_false(is_there("out/x.ted4"));
     printf("signal %d at step %llu, %llu held\n", signal, at, held);
 
     assert_int_equal(finish(begin("--checkpoint", "out/c", "--resume")), 0);
@@ -153,7 +153,7 @@ static void stop_at(const moment *m, int signal, const ball_file *want)
 
     snprintf(going, sizeof going, "ted4enc: out/c: going on from step %llu of 1900\n", held);
     assert_non_null(strstr(text, going));
-    expect_same("out/x", want);
+    expect_same("out/x.ted4", want);
     gone("out/c");
     gone("out/l");
 }
@@ -165,8 +165,8 @@ static void test_moments(void **state)
     (void)state;
     begin_test();
     assert_int_equal(finish(begin(NULL, NULL, NULL)), 0);
-    want = read_file("out/x");
-    gone("out/x");
+    want = read_file("out/x.ted4");
+    gone("out/x.ted4");
     gone("out/l");
     for (size_t i = 0; i < sizeof moments / sizeof moments[0]; i++)
         stop_at(&moments[i], i % 2 == 0 ? SIGINT : SIGTERM, &want);

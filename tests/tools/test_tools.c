@@ -213,32 +213,60 @@ static void test_contract_bound(void **state)
     }
 }
 
+/* Runs ted4dec, which must end with status 3 and one line on stderr that holds the text. */
+static void expect_refusal(const char *arguments, const char *text)
+{
+    const int status = run("ted4dec %s", arguments);
+    size_t size;
+    char *const err = (char *)contents("err", &size);
+
+    err[size] = '\0';
+    if (status != 3 || strstr(err, text) == NULL || strchr(err, '\n') != err + size - 1)
+        fail_msg("%s: status %d: %s", arguments, status, err);
+    free(err);
+}
+
 static void test_usage(void **state)
 {
-    static const char *const wrong[] = { "",
-                                         "v1.ted4 v0.ted4",
-                                         "v1.ted4 --nothing",
-                                         "v1.ted4 -o",
-                                         "v1.ted4 -o a.doc",
-                                         "v1.ted4 -o a%%s.ply",
-                                         "v1.ted4 -o a.ply",
-                                         "v1.ted4 --frames 0:999",
-                                         "v1.ted4 --frames 1 --time 0",
-                                         "v1.ted4 --time 1.5",
-                                         "v1.ted4 --render a.png",
-                                         "v1.ted4 --sh-degree 4",
-                                         "v1.ted4 -j x",
-                                         "v1.ted4 -j 257",
-                                         "v1.ted4 --test --trace --json",
-                                         "v1.ted4 --test -o a.ply --time 0",
-                                         "v1.ted4 --camera-centre 1,2",
-                                         "v1.ted4 -o missing/a.ply --time 0",
-                                         "v1.ted4 --render a.png --camera v1.ted4" };
+    static const char *const wrong[][2] = {
+        { "", "exactly one file" },
+        { "v1.ted4 v0.ted4", "exactly one file" },
+        { "v1.ted4 -o a.doc", "a.doc" },
+        { "v1.ted4 -o a%s.ply", "a%s.ply" },
+        { "v1.ted4 -o a.ply", "several frames need a %d in the name" },
+        { "v1.ted4 --hash --frames 0:999", "--frames" },
+        { "v1.ted4 --hash --frames 1 --time 0", "only one of them" },
+        { "v1.ted4 --time 1.5", "--time" },
+        { "v1.ted4 --render a.png", "both or none" },
+        { "v1.ted4 --sh-degree 4", "--sh-degree" },
+        { "v1.ted4 -j x", "--threads" },
+        { "v1.ted4 -j 257", "--threads" },
+        { "v1.ted4 --test --trace --json", "only one of them" },
+        { "v1.ted4 --test -o a.ply --time 0", "--test" },
+        { "v1.ted4 --camera-centre 1,2", "--camera-centre" },
+        { "v1.ted4 -o missing/a.ply --time 0", "missing/a.ply" },
+        { "v1.ted4 --render a.png --camera v1.ted4", "v1.ted4" },
+        /* What would have no effect. */
+        { "v1.ted4 --render a.png --camera x.json --frames 0", "--frames: only with -o or --hash" },
+        { "v1.ted4 --render a.png --camera x.json --time 0", "--time: only with -o or --hash" },
+        { "v1.ted4 --render a.jpg --camera x.json", "a.jpg: --render writes .png only" },
+        { "v1.ted4 --time 0", "--time: only with -o or --hash" },
+        { "v1.ted4 --test --frames 0", "--frames: only with -o or --hash" },
+        { "v1.ted4 --keep-all", "--keep-all: only with -o" },
+        { "v1.ted4 --hash --sh-degree 1", "--sh-degree: only with -o" },
+        { "v1.ted4 --hash --camera-centre 1,2,3", "--hash needs --frames or --time" },
+        { "v1.ted4 --time 0 -o a.raw --sh-degree 0", "more than .raw can hold" },
+        { "v1.ted4 --time 0 -o a.splat --sh-degree 1", "more than .splat can hold" },
+        { "v1.ted4 --time 0 -o a.ply --camera-centre 1,2,3", "--camera-centre: has no effect" },
+        { "v1.ted4 -q -v", "-q and -v" },
+    };
 
     (void)state;
     need_programs();
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
-        assert_int_equal(run("ted4dec %s", wrong[i]), 3);
+        expect_refusal(wrong[i][0], wrong[i][1]);
+    assert_int_equal(run("ted4dec v1.ted4 --nothing"), 3);
+    assert_int_equal(run("ted4dec v1.ted4 -o"), 3);
 }
 
 /* If every Gaussian is kept, a raw file contains the bytes that the hash of the query covers. */

@@ -1,0 +1,69 @@
+/* settings.c - see settings.h. An option that has no effect is refused: whoever wrote it expects
+ * something of it.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "settings.h"
+
+#include <stddef.h>
+#include <stdio.h>
+
+#include "cli.h"
+
+static int refuse(const char *options, const char *why)
+{
+    fprintf(stderr, "ted4dec: %s: %s (see --help)\n", options, why);
+    return TED4_EXIT_TOOL;
+}
+
+static int refuse_degree(const ted4_settings *s)
+{
+    fprintf(stderr, "ted4dec: --sh-degree: %d is more than %s can hold (see --help)\n",
+            s->sh_degree, s->format->suffix);
+    return TED4_EXIT_TOOL;
+}
+
+/* Options that say how to do what another option asks for. */
+static int check_needs(const ted4_settings *s)
+{
+    const int exports = s->output != NULL, queries = exports || s->hash;
+
+    if ((s->render != NULL) != (s->cameras != NULL))
+        return refuse("--render and --camera", "both or none");
+    if (s->has_range && !queries)
+        return refuse("--frames", "only with -o or --hash; a list of cameras says its own times");
+    if (s->has_time && !queries)
+        return refuse("--time", "only with -o or --hash; a list of cameras says its own times");
+    if (s->has_centre && !queries)
+        return refuse("--camera-centre", "only with -o or --hash");
+    if (s->hash && !exports && s->has_centre && !s->has_range && !s->has_time)
+        return refuse("--camera-centre", "--hash needs --frames or --time as well");
+    if (s->sh_degree >= 0 && !exports)
+        return refuse("--sh-degree", "only with -o");
+    if (s->keep_all && !exports)
+        return refuse("--keep-all", "only with -o");
+    return 0;
+}
+
+/* Options that contradict each other. */
+static int check_conflicts(const ted4_settings *s)
+{
+    if (s->has_range && s->has_time)
+        return refuse("--frames and --time", "only one of them");
+    if (s->test && (s->output != NULL || s->render != NULL))
+        return refuse("--test", "writes no file");
+    if (s->trace && s->json)
+        return refuse("--trace and --json", "only one of them");
+    if (s->quiet && s->verbose)
+        return refuse("-q and -v", "only one of them");
+    return 0;
+}
+
+int ted4_settings_check(const ted4_settings *s)
+{
+    const int code = check_needs(s);
+
+    if (code != 0)
+        return code;
+    if (s->output != NULL && s->sh_degree >= 0 && s->format->max_sh_degree < s->sh_degree)
+        return refuse_degree(s);
+    return check_conflicts(s);
+}

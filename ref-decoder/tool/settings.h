@@ -1,0 +1,28 @@
+/* settings.h - what the command line of ted4dec asks for, and which options go together.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#ifndef TED4_SETTINGS_H
+#define TED4_SETTINGS_H
+
+#include "export.h"
+#include "times.h"
+
+typedef struct {
+    const char *input;
+    const char *output, *render, *cameras; /* patterns, and a file name; NULL: not requested */
+    const ted4_format *format;             /* of output */
+    ted4_range range;
+    ted4_time time;
+    int has_range, has_time;
+    float centre[3];
+    int has_centre;
+    int sh_degree; /* -1: not given */
+    int threads;
+    int64_t max_memory, max_work; /* limits for decoding and for a query; 0: not given */
+    int keep_all, hash, test, lenient, trace, force, json, quiet, verbose;
+} ted4_settings;
+
+/* Checks that no option would be without effect beside the others, before the file is read.
+ * Returns 0, or an exit code (cli.h) after one line on stderr. */
+int ted4_settings_check(const ted4_settings *s);
+
+#endif
