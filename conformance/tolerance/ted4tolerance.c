@@ -13,9 +13,27 @@
 #include <stdlib.h>
 #include <string.h>
 #include "class_t.h"
+#include "ted4.h"
 #include "tool/cli.h"
 
 enum { MAX_PATH = 4096 };
+
+static const char HELP[] =
+    "Usage: ted4tolerance judge FILE.ted4 QUERIES.json FOLDER\n"
+    "       ted4tolerance table ID.json...\n"
+    "Computes the thresholds of class T (annex E of the specification).\n\n"
+    "  judge        do a decoder's records keep the thresholds of these queries?\n"
+    "               FOLDER/T5-0.bin, T5-1.bin, ...: as the decoder's contract\n"
+    "               (--ted4-run FILE --tiers T5 --dump FOLDER) leaves them;\n"
+    "               QUERIES.json: a list of queries, or a descriptor of a vector\n"
+    "  table        thresholds of vectors, by their descriptors, as lines of CSV\n"
+    "  -h, --help     this text\n"
+    "  -V, --version  print the version\n\n"
+    "Exit codes: 0 class T can be claimed, or the table is made; 1 it cannot be\n"
+    "claimed; 3 usage, input or resources.\n\n"
+    "Example:\n"
+    "  ted4dec --ted4-run a.ted4 --tiers T5 --queries q.json --dump out\n"
+    "  ted4tolerance judge a.ted4 q.json out\n";
 
 static int complain(const char *what, const char *which)
 {
@@ -154,14 +172,18 @@ int main(int argc, char **argv)
 {
     int code = 0;
 
-    if (argc == 5 && strcmp(argv[1], "judge") == 0) {
+    if (argc == 2 && (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0)) {
+        fputs(HELP, stdout);
+    } else if (argc == 2 && (strcmp(argv[1], "--version") == 0 || strcmp(argv[1], "-V") == 0)) {
+        puts("ted4tolerance " TED4_VERSION " (specification " TED4_SPEC_VERSION ")");
+    } else if (argc == 5 && strcmp(argv[1], "judge") == 0) {
         code = judge(argv[2], argv[3], argv[4]);
     } else if (argc >= 3 && strcmp(argv[1], "table") == 0) {
         for (int i = 2; code == 0 && i < argc; i++)
             code = print_vector(argv[i]);
     } else {
-        return complain("usage",
-                        "ted4tolerance judge FILE.ted4 QUERIES.json FOLDER | table ID.json...");
+        return complain("usage", "ted4tolerance judge FILE.ted4 QUERIES.json FOLDER | table "
+                                 "ID.json... (see --help)");
     }
     return fflush(stdout) != 0 ? TED4_EXIT_TOOL : code;
 }

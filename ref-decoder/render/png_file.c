@@ -64,15 +64,15 @@ int ted4_png_write(const char *path, int width, int height, const uint8_t *rgb, 
     FILE *f = fopen(temporary, "wb");
     int result = -1;
     if (f == NULL) {
-        snprintf(why, why_size, "%s: %s", temporary, strerror(errno));
+        snprintf(why, why_size, "%s", strerror(errno));
     } else {
         result = write_png(f, width, height, rgb, why, why_size);
         if (fclose(f) != 0 && result == 0) {
-            snprintf(why, why_size, "%s: %s", temporary, strerror(errno));
+            snprintf(why, why_size, "%s", strerror(errno));
             result = -1;
         }
         if (result == 0 && rename(temporary, path) != 0) {
-            snprintf(why, why_size, "%s: %s", path, strerror(errno));
+            snprintf(why, why_size, "%s", strerror(errno));
             result = -1;
         }
         if (result != 0)

@@ -8,8 +8,8 @@
 #include <stdint.h>
 
 /* Writes rgb, [height][width][3] sRGB bytes, to a temporary file beside path, which is then renamed
- * to path, so that path never holds an incomplete image. Returns 0, or -1 with a message in why
- * (truncated to why_size bytes). */
+ * to path, so that path never holds an incomplete image. Returns 0, or -1 with a reason in why,
+ * which does not name the file (truncated to why_size bytes). */
 int ted4_png_write(const char *path, int width, int height, const uint8_t *rgb, char *why,
                    size_t why_size);
 

@@ -4,11 +4,13 @@
 
 #include <errno.h>
 #include <getopt.h>
+#include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/level.h"
+#include "cli.h"
 #include "similar.h"
 #include "ted4.h"
 
@@ -147,4 +149,24 @@ int ted4_arguments_floats(const char *text, int n, float *out)
         text = end + 1;
     }
     return 0;
+}
+
+int ted4_arguments_bad(const char *program, const char *name, const char *value,
+                       const char *expected)
+{
+    fprintf(stderr, "%s: --%s: bad value %s; expected %s\n", program, name, value, expected);
+    return TED4_EXIT_TOOL;
+}
+
+int ted4_arguments_bad_number(const char *program, const char *name, const char *value, int64_t low,
+                              int64_t high)
+{
+    char expected[100];
+
+    if (high == INT64_MAX)
+        snprintf(expected, sizeof expected, "a whole number from %" PRId64 " on", low);
+    else
+        snprintf(expected, sizeof expected, "a whole number from %" PRId64 " to %" PRId64, low,
+                 high);
+    return ted4_arguments_bad(program, name, value, expected);
 }

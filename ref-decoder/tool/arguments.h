@@ -52,4 +52,13 @@ int ted4_arguments_number(const char *text, int64_t low, int64_t high, int64_t *
 /* Reads n finite numbers separated by commas. Returns 0, or -1. */
 int ted4_arguments_floats(const char *text, int n, float *out);
 
+/* Prints "PROGRAM: --NAME: bad value VALUE; expected EXPECTED" on stderr. Returns the exit code of
+ * wrong usage (cli.h). */
+int ted4_arguments_bad(const char *program, const char *name, const char *value,
+                       const char *expected);
+/* Does the same for a value that must be an integer within [low, high]; INT64_MAX: no upper
+ * bound. */
+int ted4_arguments_bad_number(const char *program, const char *name, const char *value, int64_t low,
+                              int64_t high);
+
 #endif

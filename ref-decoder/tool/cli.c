@@ -2,24 +2,40 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "cli.h"
 
+#include <errno.h>
 #include <jansson.h>
 #include <stdio.h>
+#include <string.h>
+
+static void print_json(const char *path, const ted4_error *e, const char *text)
+{
+    json_t *const name = json_string(path); /* NULL: not UTF-8 */
+    json_t *const o =
+        json_pack("{s:o, s:s, s:s, s:I, s:s}", "file", name != NULL ? name : json_null(), "verdict",
+                  ted4_verdict_name(ted4_status_verdict(e->code)), "error", ted4_status_id(e->code),
+                  "offset", (json_int_t)e->offset, "text", text);
+
+    json_dumpf(o, stdout, JSON_COMPACT);
+    putchar('\n');
+    json_decref(o);
+}
+
+int ted4_report_unread(const char *program, const char *path, int json)
+{
+    const char *const why = strerror(errno);
+
+    if (json)
+        print_json(path, &(ted4_error) { TED4_E_IO, 0 }, why);
+    fprintf(stderr, "%s: %s: %s\n", program, path, why);
+    return TED4_EXIT_TOOL;
+}
 
 int ted4_report(const char *program, const char *path, const ted4_error *e, int json)
 {
     const ted4_verdict verdict = ted4_status_verdict(e->code);
 
-    if (json) {
-        json_t *const name = json_string(path); /* NULL: not UTF-8 */
-        json_t *const o =
-            json_pack("{s:o, s:s, s:s, s:I, s:s}", "file", name != NULL ? name : json_null(),
-                      "verdict", ted4_verdict_name(verdict), "error", ted4_status_id(e->code),
-                      "offset", (json_int_t)e->offset, "text", ted4_status_text(e->code));
-
-        json_dumpf(o, stdout, JSON_COMPACT);
-        putchar('\n');
-        json_decref(o);
-    }
+    if (json)
+        print_json(path, e, ted4_status_text(e->code));
     fprintf(stderr, "%s: %s: byte %zu: %s [%s] (specification %s)\n", program, path, e->offset,
             ted4_status_text(e->code), ted4_status_id(e->code), ted4_status_section(e->code));
     return verdict == TED4_INVALID || verdict == TED4_UNSUPPORTED ? TED4_EXIT_REFUSED

@@ -26,4 +26,8 @@ uint8_t *ted4_read_stream(FILE *f, size_t *size);
  * verdict. */
 int ted4_report(const char *program, const char *path, const ted4_error *e, int json);
 
+/* Reports that path cannot be read, for the reason in errno, in the same way. Returns the exit
+ * code. */
+int ted4_report_unread(const char *program, const char *path, int json);
+
 #endif

@@ -1,7 +1,6 @@
 /* open_scene.c - the first step of ted4dec: decodes a file to a recon, strictly or leniently, and
  * reports the time and memory used.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -107,10 +106,8 @@ int ted4_action_open(ted4_session *s)
     const double start = seconds();
     int code = TED4_EXIT_FINE;
 
-    if (data == NULL) {
-        fprintf(stderr, "ted4dec: %s: %s\n", set->input, strerror(errno));
-        return TED4_EXIT_TOOL;
-    }
+    if (data == NULL)
+        return ted4_report_unread("ted4dec", set->input, set->json);
     ted4_scene *const scene = decode(s, data, size, &options, &what);
     ted4_error e = what.verdict;
 

@@ -104,9 +104,44 @@ static const ted4_command COMMAND = {
     print_formats,
 };
 
-static int usage_error(const char *text, const char *value)
+static int bad_value(const char *name, const char *value, const char *expected)
 {
-    fprintf(stderr, "ted4dec: %s: %s (see --help)\n", text, value);
+    return ted4_arguments_bad("ted4dec", name, value, expected);
+}
+
+static int bad_format(const char *value)
+{
+    char expected[200] = "a name that ends in";
+    size_t n = strlen(expected);
+
+    for (size_t i = 0; ted4_formats[i] != NULL && n < sizeof expected; i++) {
+        const char *const before = i == 0 ? " " : ted4_formats[i + 1] != NULL ? ", " : " or ";
+
+        n += (size_t)snprintf(expected + n, sizeof expected - n, "%s%s", before,
+                              ted4_formats[i]->suffix);
+    }
+    return bad_value("output", value, expected);
+}
+
+static int check_pattern(const char *name, const char *value)
+{
+    return ted4_pattern_count(value) >= 0
+               ? 0
+               : bad_value(name, value, "at most one %d, %5d or %05d, and no other %");
+}
+
+/* The operands are not one file. What looks like an output is one whose -o is missing. */
+static int bad_operands(int n, char **operand)
+{
+    const char *output = NULL;
+
+    for (int i = 0; i < n; i++)
+        if (ted4_format_find(operand[i]) != NULL)
+            output = operand[i];
+    if (n == 2 && output != NULL)
+        fprintf(stderr, "ted4dec: expected one file; -o %s writes Gaussians to a file\n", output);
+    else
+        fprintf(stderr, "ted4dec: expected one file, found %d (see --help)\n", n);
     return TED4_EXIT_TOOL;
 }
 
@@ -116,7 +151,7 @@ static int set_number(const char *name, const char *value, int high, int *out)
     int64_t n;
 
     if (ted4_arguments_number(value, 0, high, &n) != 0)
-        return usage_error(name, value);
+        return ted4_arguments_bad_number("ted4dec", name, value, 0, high);
     *out = (int)n;
     return 0;
 }
@@ -124,7 +159,9 @@ static int set_number(const char *name, const char *value, int high, int *out)
 /* Does the same for a limit, which is at least 1. */
 static int set_bound(const char *name, const char *value, int64_t *out)
 {
-    return ted4_arguments_number(value, 1, INT64_MAX, out) != 0 ? usage_error(name, value) : 0;
+    return ted4_arguments_number(value, 1, INT64_MAX, out) != 0
+               ? ted4_arguments_bad_number("ted4dec", name, value, 1, INT64_MAX)
+               : 0;
 }
 
 static int set_option(ted4_settings *s, int option, const char *value)
@@ -133,30 +170,34 @@ static int set_option(ted4_settings *s, int option, const char *value)
     case OPT_OUTPUT:
         s->output = value;
         s->format = ted4_format_find(value);
-        return s->format == NULL               ? usage_error("no such format", value)
-               : ted4_pattern_count(value) < 0 ? usage_error("bad file name", value)
-                                               : 0;
+        return s->format == NULL ? bad_format(value) : check_pattern("output", value);
     case OPT_FRAMES:
         s->has_range = 1;
-        return ted4_range_parse(value, &s->range) != 0 ? usage_error("--frames", value) : 0;
+        return ted4_range_parse(value, &s->range) == 0
+                   ? 0
+                   : bad_value("frames", value,
+                               "one frame, or A:B:STEP with A < B, as 0:10 or ::5");
     case OPT_TIME:
         s->has_time = 1;
-        return ted4_time_parse(value, &s->time) != 0 ? usage_error("--time", value) : 0;
+        return ted4_time_parse(value, &s->time) == 0
+                   ? 0
+                   : bad_value("time", value,
+                               "0 to 1, as 0.25 (at most 7 digits after the point) or 7/30");
     case OPT_CENTRE:
         s->has_centre = 1;
-        return ted4_arguments_floats(value, 3, s->centre) != 0
-                   ? usage_error("--camera-centre", value)
-                   : 0;
-    case OPT_SH_DEGREE: return set_number("--sh-degree", value, TED4_SH_MAX_DEGREE, &s->sh_degree);
+        return ted4_arguments_floats(value, 3, s->centre) == 0
+                   ? 0
+                   : bad_value("camera-centre", value, "three numbers X,Y,Z");
+    case OPT_SH_DEGREE: return set_number("sh-degree", value, TED4_SH_MAX_DEGREE, &s->sh_degree);
     case OPT_RENDER:
         s->render = value;
-        return !ted4_has_suffix(value, ".png") ? usage_error(value, "--render writes .png only")
-               : ted4_pattern_count(value) < 0 ? usage_error("bad file name", value)
-                                               : 0;
+        return ted4_has_suffix(value, ".png")
+                   ? check_pattern("render", value)
+                   : bad_value("render", value, "a name that ends in .png");
     case OPT_CAMERA: s->cameras = value; return 0;
-    case OPT_MEMORY: return set_bound("--max-memory", value, &s->max_memory);
-    case OPT_WORK: return set_bound("--max-work", value, &s->max_work);
-    case OPT_THREADS: return set_number("--threads", value, TED4_MAX_THREADS, &s->threads);
+    case OPT_MEMORY: return set_bound("max-memory", value, &s->max_memory);
+    case OPT_WORK: return set_bound("max-work", value, &s->max_work);
+    case OPT_THREADS: return set_number("threads", value, TED4_MAX_THREADS, &s->threads);
     default: break;
     }
     int *const flag[N_OPTIONS] = {
@@ -186,7 +227,7 @@ static int parse(ted4_settings *s, int argc, char **argv)
             return code;
     }
     if (optind + 1 != argc)
-        return usage_error("arguments", "exactly one file");
+        return bad_operands(argc - optind, argv + optind);
     s->input = argv[optind];
     const int code = ted4_settings_check(s);
 

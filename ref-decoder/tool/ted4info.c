@@ -77,6 +77,11 @@ static int usage_error(const char *text)
     return TED4_EXIT_TOOL;
 }
 
+static int bad_number(const char *name, const char *value, int64_t low, int64_t high)
+{
+    return ted4_arguments_bad_number("ted4info", name, value, low, high);
+}
+
 /* Returns -1 if the program should continue, else its exit code. */
 static int parse(settings *s, int argc, char **argv)
 {
@@ -90,17 +95,20 @@ static int parse(settings *s, int argc, char **argv)
         if (i == TED4_ARGUMENTS_DONE)
             return TED4_EXIT_FINE;
         if (i == OPT_THREADS && ted4_arguments_number(value, 0, TED4_MAX_THREADS, &threads) != 0)
-            return usage_error("bad number of threads");
+            return bad_number("threads", value, 0, TED4_MAX_THREADS);
         if (i == OPT_MEMORY && ted4_arguments_number(value, 1, INT64_MAX, &s->max_memory) != 0)
-            return usage_error("bad number of bytes");
+            return bad_number("max-memory", value, 1, INT64_MAX);
         if (i == OPT_WORK && ted4_arguments_number(value, 1, INT64_MAX, &s->max_work) != 0)
-            return usage_error("bad number of steps");
+            return bad_number("max-work", value, 1, INT64_MAX);
         s->on[i] = 1;
     }
     if (optind + 1 != argc)
         return usage_error("exactly one file");
-    if (s->on[OPT_VALIDATE] && s->on[OPT_BUDGET])
-        return usage_error("--validate or --budget, not both");
+    if (s->on[OPT_VALIDATE] && (s->on[OPT_BUDGET] || s->on[OPT_WHY] || s->on[OPT_VERBOSE]))
+        return usage_error("--validate goes without --budget, --why and --verbose");
+    if (s->on[OPT_QUIET] && !s->on[OPT_JSON] &&
+        (s->on[OPT_BUDGET] || s->on[OPT_WHY] || s->on[OPT_VERBOSE]))
+        return usage_error("--quiet goes without --budget, --why and --verbose");
     s->input = argv[optind];
     return -1;
 }
@@ -357,10 +365,8 @@ static int run(const settings *s, ted4_budget *budget)
     uint8_t *const data = ted4_read_file(s->input, &size);
     int code;
 
-    if (data == NULL) {
-        fprintf(stderr, "ted4info: %s: %s\n", s->input, strerror(errno));
-        return TED4_EXIT_TOOL;
-    }
+    if (data == NULL)
+        return ted4_report_unread("ted4info", s->input, s->on[OPT_JSON]);
     if (s->on[OPT_VALIDATE]) {
         code =
             ted4_findings_print(s->input, data, size, &options, s->on[OPT_JSON], s->on[OPT_QUIET]);

@@ -141,9 +141,15 @@ static int complain(const char *text)
     return TED4_REQUEST_BAD;
 }
 
-static int bad_value(int option, const char *value)
+static int bad_value(int option, const char *value, const char *expected)
 {
-    fprintf(stderr, "ted4enc: --%s: bad value %s\n", OPTIONS[option].name, value);
+    (void)ted4_arguments_bad("ted4enc", OPTIONS[option].name, value, expected);
+    return TED4_REQUEST_BAD;
+}
+
+static int bad_number(int option, const char *value, int low, int high)
+{
+    (void)ted4_arguments_bad_number("ted4enc", OPTIONS[option].name, value, low, high);
     return TED4_REQUEST_BAD;
 }
 
@@ -159,10 +165,12 @@ static int take_number(int option, const char *value, int low, int high, int *to
     int64_t n;
 
     if (ted4_arguments_number(value, low, high, &n) != 0)
-        return bad_value(option, value);
+        return bad_number(option, value, low, high);
     *to = (int)n;
     return TED4_REQUEST_GO;
 }
+
+static const char BOX[] = "X,Y,Z,X,Y,Z: two corners that differ in every coordinate";
 
 /* --bounds: two opposite corners of a box. */
 static int take_bounds(ted4_request *r, const char *value)
@@ -170,12 +178,12 @@ static int take_bounds(ted4_request *r, const char *value)
     float corner[6];
 
     if (ted4_arguments_floats(value, 6, corner) != 0)
-        return bad_value(OPT_BOUNDS, value);
+        return bad_value(OPT_BOUNDS, value, BOX);
     for (int k = 0; k < 3; k++) {
         const float a = corner[k], b = corner[3 + k];
 
         if (a == b)
-            return bad_value(OPT_BOUNDS, value);
+            return bad_value(OPT_BOUNDS, value, BOX);
         r->bounds.low[k] = a < b ? a : b;
         r->bounds.high[k] = a < b ? b : a;
     }
@@ -187,7 +195,7 @@ static int take_bounds(ted4_request *r, const char *value)
 static int take_text(int option, const char *value, const char **to)
 {
     if (value[0] == '\0' || strlen(value) > TED4_REQUEST_TEXT || strpbrk(value, "\n\r") != NULL)
-        return bad_value(option, value);
+        return bad_value(option, value, "a text of one line, at most 1000 bytes");
     *to = value;
     return TED4_REQUEST_GO;
 }
@@ -226,8 +234,9 @@ static int take(ted4_request *r, pending *p, int option, const char *value)
     case OPT_BOUNDS: return take_bounds(r, value);
     case OPT_ALPHA:
         r->premultiplied = strcmp(value, "premultiplied") == 0;
-        return r->premultiplied || strcmp(value, "straight") == 0 ? TED4_REQUEST_GO
-                                                                  : bad_value(option, value);
+        return r->premultiplied || strcmp(value, "straight") == 0
+                   ? TED4_REQUEST_GO
+                   : bad_value(option, value, "straight or premultiplied");
     case OPT_HOLD_OUT:
         if (r->n_hold_out == TED4_REQUEST_HOLD_OUT)
             return complain("too many --hold-out");
@@ -250,7 +259,7 @@ static int take(ted4_request *r, pending *p, int option, const char *value)
         int64_t bytes = 0;
 
         if (ted4_arguments_number(value, 1, MAX_TARGET, &bytes) != 0)
-            return bad_value(option, value);
+            return bad_number(option, value, 1, MAX_TARGET);
         r->target_size = (size_t)bytes;
         break;
     }
@@ -326,7 +335,7 @@ static int apply(ted4_request *r, const pending *p)
     }
     if (status == TED4_REQUEST_GO && p->capacity != NULL && strcmp(p->capacity, "auto") != 0 &&
         strcmp(p->capacity, "fixed") != 0)
-        return bad_value(OPT_CAPACITY, p->capacity);
+        return bad_value(OPT_CAPACITY, p->capacity, "auto or fixed");
     if (p->capacity != NULL)
         r->options.capacity = strcmp(p->capacity, "auto") == 0;
     for (int i = 0; i < p->n_sets && status == TED4_REQUEST_GO; i++)

@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "check_report.h"
 #include "data/dataset.h"
 #include "data/scatter.h"
 #include "file_out.h"
@@ -249,8 +250,11 @@ static int work(const ted4_request *r, ted4_teller *teller, const ted4_parallel 
 
     now(teller, TED4_TELL_LOADING, r->scene);
     ted4_teller_say(teller, "loading %s", r->scene);
-    if (ted4_dataset_load(&d, r->scene, &wanted, &m) != 0)
+    if (ted4_dataset_load(&d, r->scene, &wanted, &m) != 0) {
+        if (r->check)
+            ted4_check_report(NULL, m.text, r->json);
         return complain(teller, m.text);
+    }
 
     const size_t said = warn(teller, &d, 0);
 
@@ -261,7 +265,7 @@ static int work(const ted4_request *r, ted4_teller *teller, const ted4_parallel 
     const int bad = ted4_dataset_verify(&d, p, &m) != 0 || scatter(&d, r, p, teller, &m) != 0;
 
     if (r->check)
-        ted4_dataset_print(&d, stdout);
+        ted4_check_report(&d, bad ? m.text : NULL, r->json);
     if (bad)
         status = complain(teller, m.text);
     warn(teller, &d, said);

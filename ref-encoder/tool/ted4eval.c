@@ -132,6 +132,13 @@ static int failed(const char *what, const char *why)
     return TED4_EXIT_TOOL;
 }
 
+static int complain(const char *text)
+{
+    ted4_teller_clear(&teller);
+    fprintf(stderr, "ted4eval: %s\n", text);
+    return TED4_EXIT_TOOL;
+}
+
 /* ---- command line ---- */
 
 static int set_number(const char *name, const char *value, int low, int high, int *out)
@@ -139,7 +146,7 @@ static int set_number(const char *name, const char *value, int low, int high, in
     int64_t n;
 
     if (ted4_arguments_number(value, low, high, &n) != 0)
-        return failed(name, value);
+        return ted4_arguments_bad_number("ted4eval", name, value, low, high);
     *out = (int)n;
     return 0;
 }
@@ -151,15 +158,14 @@ static int set_option(settings *s, int option, const char *value)
         s->want_test = strcmp(value, "test") == 0;
         return s->want_test || strcmp(value, "train") == 0
                    ? 0
-                   : failed("--split", "test or train expected");
-    case OPT_DOWNSCALE: return set_number("--downscale", value, 1, MAX_DOWNSCALE, &s->downscale);
-    case OPT_MAX_FRAMES:
-        return set_number("--max-frames", value, 1, MAX_MAX_FRAMES, &s->max_frames);
+                   : ted4_arguments_bad("ted4eval", "split", value, "test or train");
+    case OPT_DOWNSCALE: return set_number("downscale", value, 1, MAX_DOWNSCALE, &s->downscale);
+    case OPT_MAX_FRAMES: return set_number("max-frames", value, 1, MAX_MAX_FRAMES, &s->max_frames);
     case OPT_ALPHA:
         s->premultiplied = strcmp(value, "premultiplied") == 0;
         return s->premultiplied || strcmp(value, "straight") == 0
                    ? 0
-                   : failed("--alpha", "straight or premultiplied expected");
+                   : ted4_arguments_bad("ted4eval", "alpha", value, "straight or premultiplied");
     case OPT_HOLD_OUT:
         if (s->n_hold_out == MAX_HOLD_OUT)
             return failed("--hold-out", "too many");
@@ -167,7 +173,7 @@ static int set_option(settings *s, int option, const char *value)
         return 0;
     case OPT_IMAGES: s->images = value; return 0;
     case OPT_SHEET: s->sheet = value; return 0;
-    case OPT_THREADS: return set_number("--threads", value, 0, TED4_MAX_THREADS, &s->threads);
+    case OPT_THREADS: return set_number("threads", value, 0, TED4_MAX_THREADS, &s->threads);
     default: break;
     }
     int *const flag[N_OPTIONS] = { [OPT_ANYWAY] = &s->anyway,
@@ -217,8 +223,10 @@ static int open_file(session *s)
     uint8_t *const bytes = ted4_read_file(s->set->input, &s->sum.bytes);
     const double start = seconds();
 
-    if (bytes == NULL)
-        return failed(s->set->input, strerror(errno));
+    if (bytes == NULL) {
+        ted4_teller_clear(&teller);
+        return ted4_report_unread("ted4eval", s->set->input, s->set->json);
+    }
     if (ted4_decode(bytes, s->sum.bytes, &options, &scene, &e) == TED4_OK) {
         ted4_scene_info(scene, &s->info);
         e.code = ted4_recon_new(&s->recon, scene, &options);
@@ -244,7 +252,7 @@ static int open_scene(session *s)
     ted4_message m;
 
     if (ted4_dataset_load(&s->data, s->set->scene, &options, &m) != 0)
-        return failed(s->set->scene, m.text);
+        return complain(m.text);
     ted4_teller_clear(&teller);
     for (size_t i = 0; i < s->data.n_warnings; i++)
         fprintf(stderr, "ted4eval: warning: %s\n", s->data.warnings[i]);

@@ -21,6 +21,14 @@ mkdir -p "$out/cache"
 XDG_CACHE_HOME=$out/cache
 export XDG_CACHE_HOME
 
+# What was found, for programs.
+"$enc" "$out/scene" --check --json 2>/dev/null | tr -d '\n' >"$out/json"
+check check_json "$out/json" '{"error":null,"layout":"D-NeRF","train":20,"test":4,"cameras":6,' \
+    '"frames":4,"sizes":[[32,24],[32,24]],' '"rate":'
+expect check_json_missing 3 "$out/none: no such folder" "$enc" "$out/none" --check --json
+"$enc" "$out/none" --check --json 2>/dev/null >"$out/json"
+check check_json_error "$out/json" "{\"error\":\"$out/none: no such folder"
+
 # A video whose frames take time: an ffmpeg that makes one picture in a second and a half.
 mkdir "$out/bin" "$out/clips"
 cat >"$out/bin/ffmpeg" <<'EOF'

@@ -13,6 +13,9 @@ stream=conformance/vectors/content/CNT-pop-0.002
 sample='CNT-pop-0.002 WRK-smallest'
 
 # judge NAME WANTED-STATUS WANTED-TEXT
+expect help 0 'Usage: ted4tolerance judge' "$TED4_BUILD/ted4tolerance" --help
+expect version 0 'ted4tolerance ' "$TED4_BUILD/ted4tolerance" --version
+expect usage 3 'ted4tolerance: usage: ' "$TED4_BUILD/ted4tolerance"
 judge() { expect "$1" "$2" "$3" "$TED4_BUILD/ted4tolerance" judge $stream.ted4 $stream.json \
     "$out/dump"; }
 

@@ -184,6 +184,19 @@ static void test_verdicts(void **state)
     assert_int_equal(run("ted4dec bad.ted4 -o x.ply --time 0"), 1);
     assert_false(exists("x.ply"));
     assert_int_equal(run("ted4dec missing.ted4"), 3);
+    assert_string_equal(out, "");
+    for (int i = 0; i < 3; i++) {
+        static const char *const reader[] = { "ted4dec", "ted4info", "ted4eval missing.ted4" };
+
+        assert_int_equal(run("%s missing.ted4 --json", reader[i]), 3);
+        json_t *const said = json_loads(out, 0, NULL);
+
+        assert_string_equal(json_string_value(json_object_get(said, "verdict")), "io");
+        assert_string_equal(json_string_value(json_object_get(said, "error")), "io.read");
+        assert_string_equal(json_string_value(json_object_get(said, "text")),
+                            "No such file or directory");
+        json_decref(said);
+    }
     assert_int_equal(run("ted4dec --ted4-run missing.ted4 --tiers T0"), 0);
     assert_non_null(strstr(out, "\"io.read\""));
     assert_int_equal(run("cat v1.ted4 | ted4dec - --hash"), 0);
@@ -229,27 +242,33 @@ static void expect_refusal(const char *arguments, const char *text)
 static void test_usage(void **state)
 {
     static const char *const wrong[][2] = {
-        { "", "exactly one file" },
-        { "v1.ted4 v0.ted4", "exactly one file" },
-        { "v1.ted4 -o a.doc", "a.doc" },
-        { "v1.ted4 -o a%s.ply", "a%s.ply" },
+        { "", "expected one file, found 0" },
+        { "v1.ted4 v0.ted4", "expected one file, found 2" },
+        { "v1.ted4 out.ply", "expected one file; -o out.ply writes Gaussians" },
+        { "v1.ted4 -o a.doc",
+          "bad value a.doc; expected a name that ends in .ply, .splat, .glb or" },
+        { "v1.ted4 -o a%s.ply", "a%s.ply; expected at most one %d" },
         { "v1.ted4 -o a.ply", "several frames need a %d in the name" },
         { "v1.ted4 --hash --frames 0:999", "--frames" },
         { "v1.ted4 --hash --frames 1 --time 0", "only one of them" },
-        { "v1.ted4 --time 1.5", "--time" },
+        { "v1.ted4 --time 1.5", "--time: bad value 1.5; expected 0 to 1" },
         { "v1.ted4 --render a.png", "both or none" },
-        { "v1.ted4 --sh-degree 4", "--sh-degree" },
-        { "v1.ted4 -j x", "--threads" },
+        { "v1.ted4 --sh-degree 4",
+          "--sh-degree: bad value 4; expected a whole number from 0 to 3" },
+        { "v1.ted4 -j x", "--threads: bad value x; expected a whole number from 0 to 256" },
         { "v1.ted4 -j 257", "--threads" },
+        { "v1.ted4 --frames 2-4", "--frames: bad value 2-4; expected one frame, or A:B:STEP" },
+        { "v1.ted4 --max-memory 1G", "--max-memory: bad value 1G; expected a whole number from 1" },
         { "v1.ted4 --test --trace --json", "only one of them" },
         { "v1.ted4 --test -o a.ply --time 0", "--test" },
-        { "v1.ted4 --camera-centre 1,2", "--camera-centre" },
+        { "v1.ted4 --camera-centre 1,2", "--camera-centre: bad value 1,2; expected three" },
         { "v1.ted4 -o missing/a.ply --time 0", "missing/a.ply" },
-        { "v1.ted4 --render a.png --camera v1.ted4", "v1.ted4" },
+        { "v1.ted4 --render a.png --camera v1.ted4", "v1.ted4: line 1: " },
+        { "v1.ted4 --render a.png --camera nope.json", "nope.json: No such file or directory" },
         /* What would have no effect. */
         { "v1.ted4 --render a.png --camera x.json --frames 0", "--frames: only with -o or --hash" },
         { "v1.ted4 --render a.png --camera x.json --time 0", "--time: only with -o or --hash" },
-        { "v1.ted4 --render a.jpg --camera x.json", "a.jpg: --render writes .png only" },
+        { "v1.ted4 --render a.jpg --camera x.json", "--render: bad value a.jpg; expected a name" },
         { "v1.ted4 --time 0", "--time: only with -o or --hash" },
         { "v1.ted4 --test --frames 0", "--frames: only with -o or --hash" },
         { "v1.ted4 --keep-all", "--keep-all: only with -o" },
@@ -314,6 +333,8 @@ static void test_frames(void **state)
     assert_false(exists("f_001.splat"));
     assert_int_equal(run("ted4dec v1.ted4 -o f_%%03d.splat --frames 1:3 -f"), 0);
     assert_true(exists("f_001.splat"));
+    assert_int_equal(run("ted4dec v1.ted4 -o LOUD.PLY --frames 1"), 0);
+    assert_true(exists("LOUD.PLY"));
     assert_int_equal(run("ted4dec v1.ted4 -o one.glb --frames 1 --json"), 0);
     assert_non_null(strstr(out, "\"path\":\"one.glb\""));
 }
