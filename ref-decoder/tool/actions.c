@@ -244,10 +244,13 @@ static int export_time(ted4_session *s, const ted4_sampler *how, ted4_time t, ui
     return code;
 }
 
-/* The degree of the export: 0 if none was requested, -1 if the format has no harmonics. */
-static int sh_degree(const ted4_settings *set)
+/* The degree of the export: if none was requested, 1 where colours depend on the view, otherwise
+ * 0; and not more than the format holds (-1: no harmonics). Degree 1 gives most of what harmonics
+ * can give. */
+static int sh_degree(const ted4_settings *set, const ted4_info *info)
 {
-    const int wanted = set->sh_degree >= 0 ? set->sh_degree : 0;
+    const int useful = info->view != TED4_VIEW_NONE;
+    const int wanted = set->sh_degree >= 0 ? set->sh_degree : useful;
 
     return wanted < set->format->max_sh_degree ? wanted : set->format->max_sh_degree;
 }
@@ -256,9 +259,12 @@ int ted4_action_export(ted4_session *s)
 {
     const ted4_settings *const set = s->set;
     const size_t n = count_times(s);
-    ted4_sampler how = { s->recon,       &s->info,
-                         &s->parallel,   { set->centre[0], set->centre[1], set->centre[2] },
-                         sh_degree(set), set->keep_all };
+    ted4_sampler how = { s->recon,
+                         &s->info,
+                         &s->parallel,
+                         { set->centre[0], set->centre[1], set->centre[2] },
+                         sh_degree(set, &s->info),
+                         set->keep_all };
     double worst_rms = 0.0;
     int code = TED4_EXIT_FINE;
 

@@ -18,7 +18,7 @@
 
 enum {
     GLTF_FLOAT = 5126,
-    GLTF_BYTE = 5121,
+    GLTF_SHORT = 5123,
     MAX_ATTRIBUTES = 5 + TED4_SH_MAX_COEFS,
     GLB_HEADER = 12,
     GLB_CHUNK = 8
@@ -28,7 +28,7 @@ enum {
 typedef struct glb_attribute {
     char name[64];
     const char *type;
-    int component; /* GLTF_FLOAT, or GLTF_BYTE normalised */
+    int component; /* GLTF_FLOAT, or GLTF_SHORT (unsigned) normalised */
     int coef;      /* index of the coefficient of spherical harmonics */
     size_t size;   /* bytes per Gaussian, a multiple of 4 */
     void (*fill)(uint8_t *out, const ted4_frame *x, size_t i, const struct glb_attribute *a);
@@ -66,19 +66,29 @@ static void glb_opacity(uint8_t *out, const ted4_frame *x, size_t i, const glb_a
     glb_floats(out, 1, (const float[]) { fminf(fmaxf(x->opacity[i], 0.0f), 1.0f) });
 }
 
-static uint8_t glb_byte(double v)
+static void glb_short(uint8_t *out, double v)
 {
-    return (uint8_t)(255.0 * fmin(fmax(v, 0.0), 1.0) + 0.5);
+    const unsigned n = (unsigned)(65535.0 * fmin(fmax(v, 0.0), 1.0) + 0.5);
+
+    out[0] = (uint8_t)(n & 255);
+    out[1] = (uint8_t)(n >> 8);
 }
 
+/* Intensity of an sRGB value in [0, 1] (IEC 61966-2-1). */
+static double linear(double v)
+{
+    return v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4);
+}
+
+/* glTF wants linear colours and alpha. 8 bits would show steps in dark colours. */
 static void glb_colour(uint8_t *out, const ted4_frame *x, size_t i, const glb_attribute *a)
 {
     const size_t n_coefs = (size_t)ted4_sh_count(x->sh_degree);
 
     (void)a;
     for (size_t c = 0; c < 3; c++)
-        out[c] = glb_byte(0.5 + TED4_SH_C0 * (double)x->sh[(i * 3 + c) * n_coefs]);
-    out[3] = glb_byte((double)x->opacity[i]);
+        glb_short(out + 2 * c, linear(0.5 + TED4_SH_C0 * (double)x->sh[(i * 3 + c) * n_coefs]));
+    glb_short(out + 6, (double)x->opacity[i]);
 }
 
 /* A rotation by 180 degrees about X changes the signs of y and z, and therefore of the basis
@@ -100,7 +110,7 @@ static int list_attributes(glb_attribute *a, int sh_degree)
 {
     static const glb_attribute fixed[] = {
         { "POSITION", "VEC3", GLTF_FLOAT, 0, 12, glb_position },
-        { "COLOR_0", "VEC4", GLTF_BYTE, 0, 4, glb_colour },
+        { "COLOR_0", "VEC4", GLTF_SHORT, 0, 8, glb_colour },
         { "KHR_gaussian_splatting:ROTATION", "VEC4", GLTF_FLOAT, 0, 16, glb_rotation },
         { "KHR_gaussian_splatting:SCALE", "VEC3", GLTF_FLOAT, 0, 12, glb_scale },
         { "KHR_gaussian_splatting:OPACITY", "SCALAR", GLTF_FLOAT, 0, 4, glb_opacity },
@@ -173,7 +183,7 @@ static void say_mesh(glb_json *j, const ted4_frame *x, const glb_attribute *a, i
             i == 0 ? "" : ",", i, a[i].component, x->n, a[i].type);
         if (i == 0)
             say_bounds(j, x);
-        say(j, "%s}", a[i].component == GLTF_BYTE ? ",\"normalized\":true" : "");
+        say(j, "%s}", a[i].component == GLTF_SHORT ? ",\"normalized\":true" : "");
     }
     say(j, "],\"bufferViews\":[");
     for (int i = 0; i < n; i++, at += a[i - 1].size * x->n)

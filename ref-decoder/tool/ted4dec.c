@@ -55,7 +55,7 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
                      "stand for all views. Default 0,0,0" },
     [OPT_SH_DEGREE] = { 0, "sh-degree", "N",
                         "spherical harmonics that stand for view-dependent colours, 0 to 3. "
-                        "Default 0" },
+                        "Default 1, if colours depend on the view" },
     [OPT_KEEP_ALL] = { 0, "keep-all", NULL, "also write Gaussians whose opacity is below 1/255" },
     [OPT_RENDER] = { 0, "render", "FILE.png",
                      "draw the cameras of --camera; the name may hold one %d" },

@@ -299,6 +299,24 @@ static void turned(const double v[3], double out[3])
     out[2] = -v[2];
 }
 
+/* The colour of degree 0 as a linear intensity, found by bisection of the other direction. */
+static double base_colour(const set *s, size_t i, size_t c)
+{
+    const size_t n_coefs = (size_t)ted4_sh_count(s->frame.sh_degree);
+    const double encoded = 0.5 + TED4_SH_C0 * (double)s->sh[(i * 3 + c) * n_coefs];
+    double low = 0.0, high = 1.0;
+
+    for (int k = 0; k < 40; k++) {
+        const double v = (low + high) / 2;
+
+        if ((v <= 0.0031308 ? 12.92 * v : 1.055 * pow(v, 1 / 2.4) - 0.055) < encoded)
+            low = v;
+        else
+            high = v;
+    }
+    return low;
+}
+
 static void check_glb_shape(const glb *g, const set *s)
 {
     const json_t *a;
@@ -309,7 +327,7 @@ static void check_glb_shape(const glb *g, const set *s)
     const uint8_t *const scale = attribute(g, "KHR_gaussian_splatting:SCALE", "VEC3", 5126, &a);
     const uint8_t *const opacity =
         attribute(g, "KHR_gaussian_splatting:OPACITY", "SCALAR", 5126, &a);
-    const uint8_t *const colour = attribute(g, "COLOR_0", "VEC4", 5121, &a);
+    const uint8_t *const colour = attribute(g, "COLOR_0", "VEC4", 5123, &a);
 
     assert_true(json_is_true(json_object_get(a, "normalized")));
     for (size_t i = 0; i < N; i++) {
@@ -333,7 +351,12 @@ static void check_glb_shape(const glb *g, const set *s)
             assert_true(float_at(scale + i * 12 + c * 4) == s->column[3 + c][i]);
         }
         assert_true(float_at(opacity + i * 4) == s->column[10][i]);
-        assert_true(near_byte(colour[i * 4 + 3], 255.0 * (double)s->column[10][i]));
+        for (size_t c = 0; c < 4; c++) {
+            const int n = colour[i * 8 + c * 2] | colour[i * 8 + c * 2 + 1] << 8;
+            const double level = c == 3 ? (double)s->column[10][i] : base_colour(s, i, c);
+
+            assert_true(fabs(n / 65535.0 - level) < 1.0 / 65535.0);
+        }
     }
 }
 

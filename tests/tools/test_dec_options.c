@@ -1,0 +1,149 @@
+/* test_dec_options.c - the command line of ted4dec: verdicts and exit codes, what is refused and
+ * how, defaults. SPDX-License-Identifier: BSD-2-Clause */
+#include <jansson.h>
+
+#include "tool_files.h"
+
+static void test_verdicts(void **state)
+{
+    size_t size;
+
+    (void)state;
+    need_programs();
+    for (int view = 0; view < 3; view++)
+        assert_int_equal(run("ted4dec --test v%d.ted4", view), 0);
+    assert_string_equal(out, "");
+    assert_int_equal(run("ted4dec --test --json -q v1.ted4"), 0);
+    json_t *const cost = json_loads(out, 0, NULL);
+    assert_true(json_real_value(json_object_get(cost, "decode_ms")) > 0);
+    assert_true(json_real_value(json_object_get(cost, "peak_mib")) > 1);
+    json_decref(cost);
+    uint8_t *const data = contents("v1.ted4", &size);
+
+    data[size / 2] ^= 16;
+    write_contents("bad.ted4", data, size);
+    free(data);
+    assert_int_equal(run("ted4dec --test --json bad.ted4"), 1);
+    json_t *const report = json_loads(out, 0, NULL);
+    assert_non_null(report);
+    assert_string_equal(json_string_value(json_object_get(report, "verdict")), "invalid");
+    assert_string_equal(json_string_value(json_object_get(report, "error")), "con.chunk-hash");
+    assert_true(json_integer_value(json_object_get(report, "offset")) > 0);
+    json_decref(report);
+    assert_int_equal(run("ted4dec bad.ted4 -o x.ply --time 0"), 1);
+    assert_false(exists("x.ply"));
+    assert_int_equal(run("ted4dec missing.ted4"), 3);
+    assert_string_equal(out, "");
+    for (int i = 0; i < 3; i++) {
+        static const char *const reader[] = { "ted4dec", "ted4info", "ted4eval missing.ted4" };
+
+        assert_int_equal(run("%s missing.ted4 --json", reader[i]), 3);
+        json_t *const said = json_loads(out, 0, NULL);
+
+        assert_string_equal(json_string_value(json_object_get(said, "verdict")), "io");
+        assert_string_equal(json_string_value(json_object_get(said, "error")), "io.read");
+        assert_string_equal(json_string_value(json_object_get(said, "text")),
+                            "No such file or directory");
+        json_decref(said);
+    }
+    assert_int_equal(run("ted4dec --ted4-run missing.ted4 --tiers T0"), 0);
+    assert_non_null(strstr(out, "\"io.read\""));
+    assert_int_equal(run("cat v1.ted4 | ted4dec - --hash"), 0);
+    assert_int_equal(run("ted4dec -h"), 0);
+    assert_non_null(strstr(out, "--sh-degree N"));
+}
+
+/* Runs ted4dec, which must end with status 3 and one line on stderr that holds the text. */
+static void expect_refusal(const char *arguments, const char *text)
+{
+    const int status = run("ted4dec %s", arguments);
+    size_t size;
+    char *const err = (char *)contents("err", &size);
+
+    err[size] = '\0';
+    if (status != 3 || strstr(err, text) == NULL || strchr(err, '\n') != err + size - 1)
+        fail_msg("%s: status %d: %s", arguments, status, err);
+    free(err);
+}
+
+static void test_usage(void **state)
+{
+    static const char *const wrong[][2] = {
+        { "", "expected one file, found 0" },
+        { "v1.ted4 v0.ted4", "expected one file, found 2" },
+        { "v1.ted4 out.ply", "expected one file; -o out.ply writes Gaussians" },
+        { "v1.ted4 -o a.doc",
+          "bad value a.doc; expected a name that ends in .ply, .splat, .glb or" },
+        { "v1.ted4 -o a%s.ply", "a%s.ply; expected at most one %d" },
+        { "v1.ted4 -o a.ply", "several frames need a %d in the name" },
+        { "v1.ted4 --hash --frames 0:999", "--frames" },
+        { "v1.ted4 --hash --frames 1 --time 0", "only one of them" },
+        { "v1.ted4 --time 1.5", "--time: bad value 1.5; expected 0 to 1" },
+        { "v1.ted4 --render a.png", "both or none" },
+        { "v1.ted4 --sh-degree 4",
+          "--sh-degree: bad value 4; expected a whole number from 0 to 3" },
+        { "v1.ted4 -j x", "--threads: bad value x; expected a whole number from 0 to 256" },
+        { "v1.ted4 -j 257", "--threads" },
+        { "v1.ted4 --frames 2-4", "--frames: bad value 2-4; expected one frame, or A:B:STEP" },
+        { "v1.ted4 --max-memory 1G", "--max-memory: bad value 1G; expected a whole number from 1" },
+        { "v1.ted4 --test --trace --json", "only one of them" },
+        { "v1.ted4 --test -o a.ply --time 0", "--test" },
+        { "v1.ted4 --camera-centre 1,2", "--camera-centre: bad value 1,2; expected three" },
+        { "v1.ted4 -o missing/a.ply --time 0", "missing/a.ply" },
+        { "v1.ted4 --render a.png --camera v1.ted4", "v1.ted4: line 1: " },
+        { "v1.ted4 --render a.png --camera nope.json", "nope.json: No such file or directory" },
+        /* What would have no effect. */
+        { "v1.ted4 --render a.png --camera x.json --frames 0", "--frames: only with -o or --hash" },
+        { "v1.ted4 --render a.png --camera x.json --time 0", "--time: only with -o or --hash" },
+        { "v1.ted4 --render a.jpg --camera x.json", "--render: bad value a.jpg; expected a name" },
+        { "v1.ted4 --time 0", "--time: only with -o or --hash" },
+        { "v1.ted4 --test --frames 0", "--frames: only with -o or --hash" },
+        { "v1.ted4 --keep-all", "--keep-all: only with -o" },
+        { "v1.ted4 --hash --sh-degree 1", "--sh-degree: only with -o" },
+        { "v1.ted4 --hash --camera-centre 1,2,3", "--hash needs --frames or --time" },
+        { "v1.ted4 --time 0 -o a.raw --sh-degree 0", "more than .raw can hold" },
+        { "v1.ted4 --time 0 -o a.splat --sh-degree 1", "more than .splat can hold" },
+        { "v1.ted4 --time 0 -o a.ply --camera-centre 1,2,3", "--camera-centre: has no effect" },
+        { "v1.ted4 -q -v", "-q and -v" },
+    };
+
+    (void)state;
+    need_programs();
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
+        expect_refusal(wrong[i][0], wrong[i][1]);
+    assert_int_equal(run("ted4dec v1.ted4 --nothing"), 3);
+    assert_int_equal(run("ted4dec v1.ted4 -o"), 3);
+}
+
+/* Without --sh-degree: 1 where colours depend on the view, else 0. */
+static void test_default_degree(void **state)
+{
+    static const char *const last[3] = { "f_dc_2\nproperty float opacity",
+                                         "f_rest_8\nproperty float opacity",
+                                         "f_rest_8\nproperty float opacity" };
+
+    (void)state;
+    need_programs();
+    for (int view = 0; view < 3; view++) {
+        char name[32];
+        size_t size;
+
+        assert_int_equal(run("ted4dec v%d.ted4 -o degree%d.ply --time 0", view, view),
+                         view == 2 ? 2 : 0);
+        snprintf(name, sizeof name, "degree%d.ply", view);
+        uint8_t *const ply = contents(name, &size);
+
+        assert_non_null(strstr((const char *)ply, last[view]));
+        free(ply);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_verdicts),
+        cmocka_unit_test(test_usage),
+        cmocka_unit_test(test_default_degree),
+    };
+    return cmocka_run_group_tests(tests, setup, teardown);
+}
