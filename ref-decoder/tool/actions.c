@@ -227,6 +227,7 @@ static int export_time(ted4_session *s, const ted4_sampler *how, ted4_time t, ui
         snprintf(comment + n, sizeof comment - (size_t)n,
                  "colours fitted to a view-dependent head, rms error %.4f\n", sample.sh_rms);
     sample.frame.comment = comment;
+    sample.frame.in_order = ted4_pattern_count(s->set->output) > 0;
     if (ted4_pattern_make(path, s->set->output, number) != 0 ||
         ted4_export(s->set->format, &sample.frame, path) != 0)
         code = failed_file(s->set->output, strerror(errno));
@@ -259,12 +260,15 @@ int ted4_action_export(ted4_session *s)
 {
     const ted4_settings *const set = s->set;
     const size_t n = count_times(s);
-    ted4_sampler how = { s->recon,
-                         &s->info,
-                         &s->parallel,
-                         { set->centre[0], set->centre[1], set->centre[2] },
-                         sh_degree(set, &s->info),
-                         set->keep_all };
+    const int is_sequence = ted4_pattern_count(set->output) > 0;
+    const ted4_sampler how = {
+        .recon = s->recon,
+        .info = &s->info,
+        .parallel = &s->parallel,
+        .camera = { set->centre[0], set->centre[1], set->centre[2] },
+        .sh_degree = sh_degree(set, &s->info),
+        .keep_all = set->keep_all || (is_sequence && !set->drop_faint),
+    };
     double worst_rms = 0.0;
     int code = TED4_EXIT_FINE;
 

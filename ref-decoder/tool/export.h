@@ -18,6 +18,7 @@ typedef struct {
     int sh_degree;          /* 0 .. 3 */
     const float *sh;        /* [n][3][(sh_degree + 1)^2]: colour in direction d =
                              * 0.5 + sum sh basis(d); sh.h */
+    int in_order;           /* 1: a file of a sequence; Gaussian i must be its record i */
     const char *comment;    /* lines, each ended by LF, for formats with text; or "" */
 } ted4_frame;
 

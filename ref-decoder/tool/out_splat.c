@@ -1,5 +1,6 @@
 /* out_splat.c - the format ".splat" with 32 bytes per Gaussian. The largest and most opaque
- * Gaussians come first, so that a partial download shows something.
+ * Gaussians come first, so that a partial download shows something; in a sequence, all files have
+ * the order of the scene.
  * A record holds position and linear scale as binary32, then r g b a and the rotation w x y z (128
  * + 128 q) as bytes.
  * SPDX-License-Identifier: BSD-2-Clause */
@@ -58,7 +59,8 @@ static int write_splat(FILE *f, const ted4_frame *x)
         order[i] = (splat_order) {
             (double)x->scale[0][i] * x->scale[1][i] * x->scale[2][i] * x->opacity[i], i
         };
-    qsort(order, x->n, sizeof *order, by_weight);
+    if (!x->in_order)
+        qsort(order, x->n, sizeof *order, by_weight);
     for (size_t i = 0; i < x->n && r == 0; i++) {
         uint8_t bytes[SPLAT_SIZE];
 
@@ -69,6 +71,7 @@ static int write_splat(FILE *f, const ted4_frame *x)
     return r;
 }
 
-const ted4_format ted4_format_splat = { ".splat",
-                                        "32 bytes per Gaussian, largest first; one colour", 0,
-                                        write_splat };
+const ted4_format ted4_format_splat = {
+    ".splat", "32 bytes per Gaussian, one colour; a single file has the largest first", 0,
+    write_splat
+};

@@ -40,6 +40,8 @@ static int check_needs(const ted4_settings *s)
         return refuse("--sh-degree", "only with -o");
     if (s->keep_all && !exports)
         return refuse("--keep-all", "only with -o");
+    if (s->drop_faint && !exports)
+        return refuse("--drop-faint", "only with -o");
     return 0;
 }
 
@@ -50,6 +52,8 @@ static int check_conflicts(const ted4_settings *s)
         return refuse("--frames and --time", "only one of them");
     if (s->test && (s->output != NULL || s->render != NULL))
         return refuse("--test", "writes no file");
+    if (s->keep_all && s->drop_faint)
+        return refuse("--keep-all and --drop-faint", "only one of them");
     if (s->trace && s->json)
         return refuse("--trace and --json", "only one of them");
     if (s->quiet && s->verbose)

@@ -18,7 +18,7 @@ typedef struct {
     int sh_degree; /* -1: not given */
     int threads;
     int64_t max_memory, max_work; /* limits for decoding and for a query; 0: not given */
-    int keep_all, hash, test, lenient, trace, force, json, quiet, verbose;
+    int keep_all, drop_faint, hash, test, lenient, trace, force, json, quiet, verbose;
 } ted4_settings;
 
 /* Checks that no option would be without effect beside the others, before the file is read.

@@ -23,6 +23,7 @@ enum {
     OPT_CENTRE,
     OPT_SH_DEGREE,
     OPT_KEEP_ALL,
+    OPT_DROP_FAINT,
     OPT_RENDER,
     OPT_CAMERA,
     OPT_HASH,
@@ -56,7 +57,10 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
     [OPT_SH_DEGREE] = { 0, "sh-degree", "N",
                         "spherical harmonics that stand for view-dependent colours, 0 to 3. "
                         "Default 1, if colours depend on the view" },
-    [OPT_KEEP_ALL] = { 0, "keep-all", NULL, "also write Gaussians whose opacity is below 1/255" },
+    [OPT_KEEP_ALL] = { 0, "keep-all", NULL,
+                       "also write Gaussians whose opacity is below 1/255. Default where the name "
+                       "holds a %d, so that all files of a sequence have the same Gaussians" },
+    [OPT_DROP_FAINT] = { 0, "drop-faint", NULL, "leave them out. Default for a single file" },
     [OPT_RENDER] = { 0, "render", "FILE.png",
                      "draw the cameras of --camera; the name may hold one %d" },
     [OPT_CAMERA] = { 0, "camera", "FILE.json",
@@ -200,11 +204,11 @@ static int set_option(ted4_settings *s, int option, const char *value)
     case OPT_THREADS: return set_number("threads", value, TED4_MAX_THREADS, &s->threads);
     default: break;
     }
-    int *const flag[N_OPTIONS] = {
-        [OPT_KEEP_ALL] = &s->keep_all, [OPT_HASH] = &s->hash,   [OPT_TEST] = &s->test,
-        [OPT_LENIENT] = &s->lenient,   [OPT_TRACE] = &s->trace, [OPT_FORCE] = &s->force,
-        [OPT_JSON] = &s->json,         [OPT_QUIET] = &s->quiet, [OPT_VERBOSE] = &s->verbose
-    };
+    int *const flag[N_OPTIONS] = { [OPT_KEEP_ALL] = &s->keep_all, [OPT_DROP_FAINT] = &s->drop_faint,
+                                   [OPT_HASH] = &s->hash,         [OPT_TEST] = &s->test,
+                                   [OPT_LENIENT] = &s->lenient,   [OPT_TRACE] = &s->trace,
+                                   [OPT_FORCE] = &s->force,       [OPT_JSON] = &s->json,
+                                   [OPT_QUIET] = &s->quiet,       [OPT_VERBOSE] = &s->verbose };
 
     *flag[option] = 1;
     return 0;

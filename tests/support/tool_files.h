@@ -66,6 +66,14 @@ static inline uint8_t *contents(const char *name, size_t *size)
     return data;
 }
 
+static inline size_t size_of(const char *name)
+{
+    size_t size;
+
+    free(contents(name, &size));
+    return size;
+}
+
 static inline void write_contents(const char *name, const void *data, size_t size)
 {
     char path[PATH_SIZE];

@@ -99,6 +99,8 @@ static void test_usage(void **state)
         { "v1.ted4 --time 0", "--time: only with -o or --hash" },
         { "v1.ted4 --test --frames 0", "--frames: only with -o or --hash" },
         { "v1.ted4 --keep-all", "--keep-all: only with -o" },
+        { "v1.ted4 --drop-faint", "--drop-faint: only with -o" },
+        { "v1.ted4 -o a.ply --time 0 --keep-all --drop-faint", "only one of them" },
         { "v1.ted4 --hash --sh-degree 1", "--sh-degree: only with -o" },
         { "v1.ted4 --hash --camera-centre 1,2,3", "--hash needs --frames or --time" },
         { "v1.ted4 --time 0 -o a.raw --sh-degree 0", "more than .raw can hold" },

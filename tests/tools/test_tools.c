@@ -86,6 +86,25 @@ static void test_frames(void **state)
     assert_false(exists("f_001.splat"));
     assert_int_equal(run("ted4dec v1.ted4 -o f_%%03d.splat --frames 1:3 -f"), 0);
     assert_true(exists("f_001.splat"));
+    for (int i = 0; i < 3; i++) { /* all Gaussians, in the order of the scene */
+        static const char *const name[] = { "f_000.splat", "f_001.splat", "f_002.splat" };
+        size_t size, raw_size;
+        uint8_t *const splat = contents(name[i], &size);
+
+        assert_int_equal(run("ted4dec v1.ted4 -o all.raw --keep-all -f --frames %d", i), 0);
+        uint8_t *const raw = contents("all.raw", &raw_size);
+
+        assert_int_equal(size, file[1].info.n_gaussians * 32);
+        assert_int_equal(raw_size, file[1].info.n_gaussians * 56);
+        for (size_t k = 0; k < file[1].info.n_gaussians; k++)
+            assert_memory_equal(splat + k * 32, raw + k * 56, 24);
+        free(splat);
+        free(raw);
+    }
+    assert_int_equal(run("ted4dec v1.ted4 -o g_%%d.splat --frames 1 --drop-faint"), 0);
+    assert_int_equal(run("ted4dec v1.ted4 -o g.splat --frames 1"), 0);
+    assert_int_equal(size_of("g_1.splat"), size_of("g.splat"));
+    assert_true(size_of("g.splat") < file[1].info.n_gaussians * 32);
     assert_int_equal(run("ted4dec v1.ted4 -o LOUD.PLY --frames 1"), 0);
     assert_true(exists("LOUD.PLY"));
     assert_int_equal(run("ted4dec v1.ted4 -o one.glb --frames 1 --json"), 0);
