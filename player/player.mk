@@ -38,12 +38,11 @@ deps-player: deps
 .PHONY: player-wasm player-test player-conformance deps-player
 
 # The page (page/), by esbuild and the packages that player/package-lock.json pins; they lie in the
-# build folder. The licences of what is drawn with come first in player.js.
+# build folder. The licence of PlayCanvas comes first in player.js.
 NPM     = $W/npm
 ESBUILD = NODE_PATH=$(abspath $(NPM)/node_modules) $(NPM)/node_modules/.bin/esbuild --bundle \
           --minify --format=iife --target=es2022 --log-level=warning
-PAGE_LICENCES = $(addprefix $(NPM)/node_modules/,@sparkjsdev/spark/LICENSE three/LICENSE \
-                fflate/LICENSE)
+PAGE_LICENCE = $(NPM)/node_modules/playcanvas/LICENSE
 PAGE_SRC = $(wildcard player/page/*.js player/src/*.js player/adapters/*.js)
 player: $(addprefix $W/,index.html style.css player.js ted4.wasm)
 $(NPM)/installed: player/package.json player/package-lock.json
@@ -59,8 +58,19 @@ $W/worker.txt: $(PAGE_SRC) $(NPM)/installed
 $W/player.js: $(PAGE_SRC) $W/worker.txt $(NPM)/installed
 	$(ESBUILD) player/page/main.js --loader:.txt=text --outfile=$@.new \
 	    --alias:worker-text=$(abspath $W/worker.txt) --log-override:empty-import-meta=silent
-	{ echo '/*! Spark, three.js, fflate:'; cat $(PAGE_LICENCES); echo '*/'; cat $@.new; } >$@
+	{ echo '/*! PlayCanvas:'; cat $(PAGE_LICENCE); echo '*/'; cat $@.new; } >$@
 	@rm $@.new
 player-html: player
 	node player/export.mjs $W $(FILE) $(OUT)
 .PHONY: player player-html
+
+# The page in headless Chromium, with a small file that is trained for it.
+T       = $W/test
+test-player: player $T/occluder.ted4 $B/ted4dec
+	TED4_PLAYER=$(abspath $W) TED4_SCENE=$(abspath $T/occluder.ted4) TED4_OUT=$(abspath $T) \
+	TED4_DEC=$(abspath $B/ted4dec) node --test --test-concurrency=1 player/test/*.browser.mjs
+$T/occluder.ted4: | $B/ted4scene $B/ted4enc
+	@mkdir -p $T
+	$B/ted4scene occluder -o $T/scene -f
+	$B/ted4enc $T/scene -o $@ --preset draft --iterations 800,400 --seed 1 -f -q
+.PHONY: test-player

@@ -1,69 +1,71 @@
-// playcanvas.js - the Gaussians of a time as a GSplatContainer of PlayCanvas, in binary32 as the
-// decoder gives them. Axes of the world stay right, down, forward; turn the entity if y is up.
+// playcanvas.js - the Gaussians of a time as a GSplatContainer of PlayCanvas: every array of a
+// query is a texture of its own, in binary32 as the decoder gives it. The axes of the world stay
+// right, down, forward; turn the entity if y is up.
 // SPDX-License-Identifier: BSD-2-Clause
-import {
-  BoundingBox, GSplatContainer, GSplatFormat, PIXELFORMAT_RGBA32F, Vec3,
-} from "playcanvas";
+import { BoundingBox, GSplatContainer, GSplatFormat, PIXELFORMAT_R32F, Vec3 } from "playcanvas";
 
-const STREAMS = ["dataCenter", "dataScale", "dataRotation", "dataColor"];
-// Opacity travels in the fourth value of the centre; rotations are w, x, y, z as PlayCanvas wants.
+const STREAMS = ["meanX", "meanY", "meanZ", "scaleX", "scaleY", "scaleZ", "turnW", "turnX", "turnY",
+  "turnZ", "opacity", "red", "green", "blue"];
 const READ_GLSL = `
-vec3 getCenter() { return loadDataCenter().xyz; }
-vec4 getColor() { return vec4(loadDataColor().rgb, loadDataCenter().w); }
-vec3 getScale() { return loadDataScale().xyz; }
-vec4 getRotation() { return loadDataRotation(); }
+vec3 getCenter() { return vec3(loadMeanX().r, loadMeanY().r, loadMeanZ().r); }
+vec4 getColor() { return vec4(loadRed().r, loadGreen().r, loadBlue().r, loadOpacity().r); }
+vec3 getScale() { return vec3(loadScaleX().r, loadScaleY().r, loadScaleZ().r); }
+vec4 getRotation() { return vec4(loadTurnW().r, loadTurnX().r, loadTurnY().r, loadTurnZ().r); }
 `;
 const READ_WGSL = `
-fn getCenter() -> vec3f { return loadDataCenter().xyz; }
-fn getColor() -> vec4f { return vec4f(loadDataColor().rgb, loadDataCenter().w); }
-fn getScale() -> vec3f { return loadDataScale().xyz; }
-fn getRotation() -> vec4f { return loadDataRotation(); }
+fn getCenter() -> vec3f { return vec3f(loadMeanX().r, loadMeanY().r, loadMeanZ().r); }
+fn getColor() -> vec4f {
+    return vec4f(loadRed().r, loadGreen().r, loadBlue().r, loadOpacity().r);
+}
+fn getScale() -> vec3f { return vec3f(loadScaleX().r, loadScaleY().r, loadScaleZ().r); }
+fn getRotation() -> vec4f {
+    return vec4f(loadTurnW().r, loadTurnX().r, loadTurnY().r, loadTurnZ().r);
+}
 `;
 
 // A container for n Gaussians.
 export function createContainer(device, n) {
-  const streams = STREAMS.map((name) => ({ name, format: PIXELFORMAT_RGBA32F }));
-  const format = new GSplatFormat(device, streams,
-    { readGLSL: READ_GLSL, readWGSL: READ_WGSL });
+  const streams = STREAMS.map((name) => ({ name, format: PIXELFORMAT_R32F }));
+  const format = new GSplatFormat(device, streams, { readGLSL: READ_GLSL, readWGSL: READ_WGSL });
   return new GSplatContainer(device, n, format);
 }
 
-function interleave(target, stride, arrays, n) {
-  arrays.forEach((array, c) => {
-    for (let i = 0, at = c; i < n; i++, at += stride) target[at] = array[i];
-  });
+// PlayCanvas sorts by these.
+function setCenters(container, [x, y, z], n) {
+  const { centers } = container;
+  for (let i = 0, at = 0; i < n; i++, at += 3) {
+    centers[at] = x[i];
+    centers[at + 1] = y[i];
+    centers[at + 2] = z[i];
+  }
 }
 
-function upload(container, name, arrays, n) {
-  const texture = container.getTexture(name);
-  interleave(texture.lock(), 4, arrays, n);
-  texture.unlock();
+function range(array, n) {
+  let low = Infinity, high = -Infinity;
+  for (let i = 0; i < n; i++) {
+    if (array[i] < low) low = array[i];
+    if (array[i] > high) high = array[i];
+  }
+  return [low, high];
 }
 
-// PlayCanvas sorts between the bounds of all centres.
+// Its sort loses what lies out of these bounds.
 function bounds(mean, n) {
-  const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
-  mean.forEach((array, c) => {
-    for (let i = 0; i < n; i++) {
-      if (array[i] < low[c]) low[c] = array[i];
-      if (array[i] > high[c]) high[c] = array[i];
-    }
-  });
+  const ranges = mean.map((array) => range(array, n));
   const box = new BoundingBox();
-  box.setMinMax(new Vec3(low), new Vec3(high));
+  box.setMinMax(new Vec3(ranges.map(([low]) => low)), new Vec3(ranges.map(([, high]) => high)));
   return box;
 }
 
-// Puts Gaussians (Scene.gaussians, ClientScene.gaussians) into the container. moved: false if only
-// colours and opacities differ from those before.
-export function updateContainer(container, g, moved = true) {
-  upload(container, "dataColor", g.colour, g.n);
-  upload(container, "dataCenter", [...g.mean, g.opacity], g.n);
-  upload(container, "dataScale", g.scale, g.n);
-  upload(container, "dataRotation", g.rotation, g.n);
-  if (moved) {
-    interleave(container.centers, 3, g.mean, g.n);
-    container.aabb.copy(bounds(g.mean, g.n));
-  }
-  container.update(g.n, moved);
+// Puts Gaussians (Scene.gaussians, ClientScene.gaussians) into the container. The component then
+// needs workBufferUpdate = WORKBUFFER_UPDATE_ONCE.
+export function updateContainer(container, { n, mean, scale, rotation, opacity, colour }) {
+  [...mean, ...scale, ...rotation, opacity, ...colour].forEach((array, i) => {
+    const texture = container.getTexture(STREAMS[i]);
+    texture.lock().set(array);
+    texture.unlock();
+  });
+  setCenters(container, mean, n);
+  container.aabb.copy(bounds(mean, n));
+  container.update(n);
 }

@@ -118,8 +118,7 @@ bindFiles();
 bindView();
 countPictures();
 
-function frame(now) {
-  player.tick(now);
+function frame() {
   timeline.show();
   requestAnimationFrame(frame);
 }

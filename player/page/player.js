@@ -18,7 +18,7 @@ export class Player {
   file = null; // of the open file: { name, bytes, info, chunks, meta, cameras, milliseconds }
   statistics = { evaluate: 0, drawn: 0, firstPicture: 0 };
   #canvas;
-  #view;
+  #view = null;
   #client;
   #ready;
   #scene = null;
@@ -34,10 +34,14 @@ export class Player {
   constructor(canvas, worker, wasm, failed) {
     this.#canvas = canvas;
     this.#failed = failed;
-    this.#view = new View(canvas);
     this.navigation = new Navigation(canvas);
     this.#client = new Ted4Client(worker);
-    this.#ready = this.#client.load(wasm);
+    this.#ready = Promise.all([this.#client.load(wasm), this.#startView()]);
+  }
+
+  async #startView() {
+    this.#view = await View.create(this.#canvas);
+    this.#view.onFrame((now) => this.#tick(now), () => { this.statistics.drawn++; });
   }
 
   // Shows a file from its start. Rejects with Ted4Error; then what was there before stays.
@@ -99,19 +103,16 @@ export class Player {
     this.#view.setBackground(rgb);
   }
 
-  // To be called for every frame of the display. Returns whether a picture was drawn.
-  tick(now) {
+  // Before every frame of the display.
+  #tick(now) {
     this.clock.advance(now);
     this.navigation.fly((now - this.#last) / 1000);
     this.#last = now;
-    if (this.file === null) return this.#view.draw();
+    if (this.file === null) return;
     this.#followCamera();
     this.#evaluate();
-    const isDrawn = this.#view.draw();
-    if (isDrawn) this.statistics.drawn++;
     if (this.statistics.firstPicture === 0 && this.isSettled)
-      this.statistics.firstPicture = performance.now() - this.#opened;
-    return isDrawn;
+      this.statistics.firstPicture = now - this.#opened;
   }
 
   #followCamera() {

@@ -1,92 +1,122 @@
-// view.js - draws the Gaussians of a scene with Spark, as annex I does: for a pinhole camera, with
-// 0.3 pixels squared added to covariances and opacities left alone, in the order of depth.
+// view.js - draws the Gaussians of a scene with PlayCanvas, as annex I does.
 // SPDX-License-Identifier: BSD-2-Clause
-import { SparkRenderer } from "@sparkjsdev/spark";
-import { Camera, Color, ColorManagement, LinearSRGBColorSpace, Scene, WebGLRenderer } from "three";
+import {
+  AppBase, AppOptions, CameraComponentSystem, Color, createGraphicsDevice, DEVICETYPE_WEBGL2,
+  Entity, FILLMODE_NONE, GSplatComponentSystem, GSPLATDATA_LARGE, Mat4, Quat, RESOLUTION_FIXED,
+  TONEMAP_NONE, WORKBUFFER_UPDATE_ONCE,
+} from "playcanvas";
+import { drawAsAnnexI } from "../adapters/playcanvas-kernel.js";
+import { createContainer, updateContainer } from "../adapters/playcanvas.js";
 import { centreOf } from "./camera.js";
-import { Gaussians } from "./gaussians.js";
 
-const LEAST_ALPHA = 1 / 255; // I.3
-const LIKE_ANNEX_I = {
-  preBlurAmount: 0.3, blurAmount: 0, sortRadial: false, accumExtSplats: true,
-  minAlpha: LEAST_ALPHA, maxStdDev: Math.sqrt(-2 * Math.log(LEAST_ALPHA)),
-};
 const DEPTHS = 1e5; // the farthest depth over the nearest
-
-// Colours are display-referred already.
-ColorManagement.enabled = false;
+const FRAMES = 3; // to draw after a change: PlayCanvas takes it in, sorts it in a worker, shows it
 
 export class View {
-  #renderer;
-  #spark;
-  #scene = new Scene();
-  #camera = new Camera();
-  #gaussians = null;
-  #dirty = true;
+  #app;
+  #camera;
+  #entity = null;
+  #container = null;
+  #projection = new Mat4();
+  #frames = 0; // still to be drawn
+  #isSorted = true;
 
-  constructor(canvas) {
-    this.#renderer = new WebGLRenderer({ canvas, antialias: false });
-    this.#renderer.outputColorSpace = LinearSRGBColorSpace;
-    this.#spark = new SparkRenderer({
-      renderer: this.#renderer, onDirty: () => { this.#dirty = true; }, ...LIKE_ANNEX_I,
-    });
-    this.#scene.add(this.#spark);
-    this.#camera.matrixAutoUpdate = false;
+  static async create(canvas) {
+    const view = new View();
+    const options = new AppOptions();
+    options.graphicsDevice = await createGraphicsDevice(canvas,
+      { deviceTypes: [DEVICETYPE_WEBGL2], antialias: false, alpha: false });
+    options.componentSystems = [CameraComponentSystem, GSplatComponentSystem];
+    view.#start(canvas, options);
+    return view;
   }
 
-  // A new scene of n Gaussians; 0: none.
+  #start(canvas, options) {
+    this.#app = new AppBase(canvas);
+    this.#app.init(options);
+    this.#app.setCanvasFillMode(FILLMODE_NONE);
+    this.#app.autoRender = false;
+    const { gsplat } = this.#app.scene;
+    Object.assign(gsplat, { dataFormat: GSPLATDATA_LARGE, minPixelSize: 0, radialSorting: false });
+    drawAsAnnexI(options.graphicsDevice);
+    this.#camera = new Entity("camera", this.#app);
+    this.#camera.addComponent("camera", {
+      toneMapping: TONEMAP_NONE, calculateProjection: (matrix) => matrix.copy(this.#projection),
+    });
+    this.#app.root.addChild(this.#camera);
+    this.#app.systems.gsplat.on("frame:ready", (camera, layer, isReady) => {
+      this.#isSorted = isReady;
+    });
+    this.#app.scene.on("gsplat:sorted", () => this.#change());
+    this.#app.on("postrender", () => { this.#frames--; });
+    this.#app.start();
+  }
+
+  // changed(now) is called before every frame of the display, drawn() after each that was drawn.
+  onFrame(changed, drawn) {
+    this.#app.on("update", () => {
+      changed(performance.now());
+      this.#app.renderNextFrame = this.#frames > 0 || !this.#isSorted;
+    });
+    this.#app.on("postrender", drawn);
+  }
+
+  // A new scene, of n Gaussians.
   reset(n) {
-    if (this.#gaussians !== null) {
-      this.#scene.remove(this.#gaussians);
-      this.#gaussians.dispose();
-    }
-    this.#gaussians = n > 0 ? new Gaussians(n) : null;
-    if (n > 0) this.#scene.add(this.#gaussians);
-    this.#dirty = true;
+    this.#entity?.destroy();
+    this.#container?.destroy();
+    this.#entity = this.#container = null;
+    this.#change();
+    if (n === 0) return;
+    this.#container = createContainer(this.#app.graphicsDevice, n);
+    this.#entity = new Entity("gaussians", this.#app);
+    this.#entity.addComponent("gsplat", { resource: this.#container });
+    this.#app.root.addChild(this.#entity);
   }
 
   // g: the Gaussians of a time, from a decoder.
   setGaussians(g) {
-    this.#gaussians?.set(g);
-    this.#dirty = true;
+    if (this.#container === null) return;
+    updateContainer(this.#container, g);
+    this.#entity.gsplat.workBufferUpdate = WORKBUFFER_UPDATE_ONCE;
+    this.#isSorted = false;
+    this.#change();
   }
 
   // camera: of annex I, for the whole canvas; near: the depth at which Gaussians begin to show.
   setCamera(camera, near) {
-    const { width, height, fx, fy, cx, cy, R } = camera;
-    const [x, y, z] = centreOf(camera), far = DEPTHS * near;
-    // Camera axes of three.js point right, up, back.
-    this.#camera.matrix.set(
-      R[0], -R[3], -R[6], x, R[1], -R[4], -R[7], y, R[2], -R[5], -R[8], z, 0, 0, 0, 1);
-    this.#camera.projectionMatrix.set(
-      2 * fx / width, 0, 1 - 2 * cx / width, 0, 0, 2 * fy / height, 2 * cy / height - 1, 0,
-      0, 0, (far + near) / (near - far), 2 * far * near / (near - far), 0, 0, -1, 0);
-    this.#camera.projectionMatrixInverse.copy(this.#camera.projectionMatrix).invert();
-    this.#camera.updateMatrixWorld(true);
-    this.#dirty = true;
+    const { width, height, fx, fy, cx, cy, R } = camera, far = DEPTHS * near;
+    // Camera axes of PlayCanvas point right, up, back.
+    const axes = new Mat4();
+    axes.set([R[0], R[1], R[2], 0, -R[3], -R[4], -R[5], 0, -R[6], -R[7], -R[8], 0, 0, 0, 0, 1]);
+    this.#camera.setPosition(...centreOf(camera));
+    this.#camera.setRotation(new Quat().setFromMat4(axes));
+    this.#projection.set([
+      2 * fx / width, 0, 0, 0, 0, 2 * fy / height, 0, 0,
+      1 - 2 * cx / width, 2 * cy / height - 1, (far + near) / (near - far), -1,
+      0, 0, 2 * far * near / (near - far), 0,
+    ]);
+    Object.assign(this.#camera.camera, { nearClip: near, farClip: far });
+    this.#change();
   }
 
   // Red, green, blue from 0 to 255, as on the display.
   setBackground(rgb) {
-    this.#renderer.setClearColor(new Color(...rgb.map((v) => v / 255)));
-    this.#dirty = true;
+    this.#camera.camera.clearColor = new Color(...rgb.map((v) => v / 255));
+    this.#change();
   }
 
   resize(width, height) {
-    this.#renderer.setSize(width, height, false);
-    this.#dirty = true;
-  }
-
-  // Draws if anything has changed; whether it did.
-  draw() {
-    if (!this.#dirty) return false;
-    this.#dirty = false;
-    this.#renderer.render(this.#scene, this.#camera);
-    return true;
+    this.#app.setCanvasResolution(RESOLUTION_FIXED, width, height);
+    this.#change();
   }
 
   // Whether what was set last is on the screen, in the right order.
   get isSettled() {
-    return !this.#dirty && !this.#spark.sorting && !this.#spark.sortDirty;
+    return this.#frames <= 0 && this.#isSorted;
+  }
+
+  #change() {
+    this.#frames = FRAMES;
   }
 }

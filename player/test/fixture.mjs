@@ -1,0 +1,38 @@
+// fixture.mjs - what tests in a browser share: the trained file that `make test-player` names, a
+// camera for it, and the decoder's own pictures of that.
+// SPDX-License-Identifier: BSD-2-Clause
+import { execFileSync } from "node:child_process";
+import { mkdtempSync, readFileSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { lookingAt } from "../page/camera.js";
+
+function needed(name) {
+  const value = process.env[name];
+  if (value === undefined) throw new Error(`${name} is not set: run make test-player`);
+  return value;
+}
+
+export const SCENE = needed("TED4_SCENE"); // a .ted4 file of the scene "occluder", z up
+export const PLAYER = needed("TED4_PLAYER"); // folder of the built player
+const DECODER = needed("TED4_DEC");
+export const OUT = process.env.TED4_OUT ?? mkdtempSync(join(tmpdir(), "ted4-player-"));
+
+const LENS = { width: 320, height: 240, fx: 320, fy: 320, cx: 160, cy: 120 };
+export const CAMERA = lookingAt(LENS, [-1.3, -3.2, 1.9], [0, 0, 0.3], [0, 0, 1]);
+
+export function decode(...args) {
+  return execFileSync(DECODER, args, { encoding: "utf8" });
+}
+
+// The PNG, base64, of the camera at a time, by the decoder.
+export function rendered(time, camera = CAMERA) {
+  const list = join(OUT, "camera.json"), picture = join(OUT, "rendered.png");
+  writeFileSync(list, JSON.stringify([{ ...camera, time }]));
+  decode(SCENE, "--render", picture, "--camera", list, "-f", "-q");
+  return readFileSync(picture).toString("base64");
+}
+
+export function keep(name, base64) {
+  writeFileSync(join(OUT, name), Buffer.from(base64, "base64"));
+}

@@ -1,0 +1,149 @@
+// page.browser.mjs - the page in headless Chromium: pictures against those of the decoder, time,
+// camera, refusals, and the page that holds everything.
+// SPDX-License-Identifier: BSD-2-Clause
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { readFileSync, writeFileSync } from "node:fs";
+import { basename, dirname, join } from "node:path";
+import { after, before, test } from "node:test";
+import { pathToFileURL } from "node:url";
+import { Browser } from "./browser.mjs";
+import { CAMERA, decode, keep, OUT, PLAYER, rendered, SCENE } from "./fixture.mjs";
+import { psnr, sideBySide } from "./pictures.mjs";
+import { serve } from "./server.mjs";
+
+const LEAST_PSNR = 35, MOST_OVERHEAD = 2.5e6;
+const POSITION = "ted4Player.clock.position";
+let browser, server, page;
+
+before(async () => {
+  server = await serve(PLAYER, dirname(SCENE), OUT);
+  browser = new Browser();
+  page = await browser.page(CAMERA.width, CAMERA.height);
+  await page.open(`${server.origin}/?file=${basename(SCENE)}`);
+  await page.until("ted4Player.isSettled");
+});
+
+after(async () => {
+  await browser?.close();
+  server?.close();
+});
+
+// Only the scene, through CAMERA.
+function showBare() {
+  return page.evaluate(`document.body.classList.add("bare");
+    ted4Player.navigation.camera = ${JSON.stringify(CAMERA)}; 0`);
+}
+
+test("a file is opened, and its hash is the one that the decoder prints", async () => {
+  const hash = await page.evaluate("ted4Player.file.info.hash");
+  assert.ok(decode(SCENE, "--hash").includes(hash));
+  assert.match(await page.evaluate(`document.getElementById("verdict").textContent`), /^Valid/);
+  assert.equal(await page.evaluate(`document.getElementById("message").hidden`), true);
+});
+
+test("pictures at three times agree with those of ted4dec --render", async (t) => {
+  await showBare();
+  const frames = await page.evaluate("ted4Player.clock.frames");
+  for (const part of [0, 0.5, 1]) {
+    const frame = Math.round(part * (frames - 1));
+    await page.evaluate(`ted4Player.clock.seek(${frame}); 0`);
+    await page.until("ted4Player.isSettled");
+    const shot = await page.screenshot(), reference = rendered(frame / (frames - 1));
+    const decibels = await psnr(page, shot, reference);
+    t.diagnostic(`frame ${frame}: ${decibels.toFixed(1)} dB`);
+    keep(`frame-${frame}.jpg`, await sideBySide(page, [shot, reference]));
+    assert.ok(decibels >= LEAST_PSNR, `frame ${frame}: ${decibels} dB`);
+  }
+});
+
+test("space plays and pauses, and pictures follow", async () => {
+  await page.evaluate("ted4Player.clock.seek(0); 0");
+  await page.until("ted4Player.isSettled");
+  const drawn = await page.evaluate("ted4Player.statistics.drawn");
+  await page.press(" ", "Space");
+  await page.until(`${POSITION} > 2`);
+  await page.press(" ", "Space");
+  const stopped = await page.evaluate(POSITION);
+  await page.until("ted4Player.isSettled");
+  assert.equal(await page.evaluate(POSITION), stopped);
+  assert.ok(await page.evaluate("ted4Player.statistics.drawn") > drawn);
+});
+
+test("keys step and jump", async () => {
+  const last = await page.evaluate("ted4Player.clock.frames - 1");
+  await page.press("End");
+  assert.equal(await page.evaluate(POSITION), last);
+  await page.press(",", "Comma");
+  assert.equal(await page.evaluate(POSITION), last - 1);
+  await page.press("Home");
+  assert.equal(await page.evaluate(POSITION), 0);
+  await page.press(".", "Period");
+  assert.equal(await page.evaluate(POSITION), 1);
+  await page.press("ArrowLeft");
+  assert.equal(await page.evaluate(POSITION), 0);
+});
+
+test("the slider scrubs, to times between frames too", async () => {
+  await page.evaluate(`(() => {
+    const time = document.getElementById("time");
+    time.value = 2.5;
+    time.dispatchEvent(new Event("input"));
+  })()`);
+  await page.until("ted4Player.isSettled");
+  assert.equal(await page.evaluate(POSITION), 2.5);
+  assert.match(await page.evaluate(`document.getElementById("frame").textContent`), /^2 /);
+});
+
+test("dragging orbits about the scene, and the distance stays", async () => {
+  const centre = `(({ R, t }) => [0, 1, 2].map((j) =>
+    -(R[j] * t[0] + R[3 + j] * t[1] + R[6 + j] * t[2])))(ted4Player.navigation.camera)`;
+  const [x, y, z] = await page.evaluate(centre);
+  await page.drag(100, 100, 180, 110);
+  const [newX, newY, newZ] = await page.evaluate(centre);
+  assert.ok(Math.hypot(newX - x, newY - y, newZ - z) > 0.1);
+  await page.until("ted4Player.isSettled");
+});
+
+test("the question mark opens the help, which Escape closes", async () => {
+  await page.press("?", "Slash");
+  assert.equal(await page.evaluate(`document.getElementById("help").open`), true);
+  await page.evaluate(`document.getElementById("help").close(); 0`);
+});
+
+test("bytes by element sum up to the file", async () => {
+  const rows = await page.evaluate("ted4Player.bytesByElement()");
+  assert.equal(rows.reduce((sum, { bytes }) => sum + bytes, 0), readFileSync(SCENE).length);
+});
+
+test("nothing is asked for elsewhere, and nothing fails on the way", () => {
+  const elsewhere = page.requests.filter((url) =>
+    !url.startsWith(server.origin) && !url.startsWith("blob:") && !url.startsWith("data:"));
+  assert.deepEqual(elsewhere, []);
+  assert.deepEqual(page.errors, []);
+});
+
+test("a broken file is refused with identifier and offset", async () => {
+  const bytes = readFileSync(SCENE);
+  bytes[bytes.length - 40] ^= 1;
+  writeFileSync(join(OUT, "broken.ted4"), bytes);
+  const broken = await browser.page(640, 360);
+  await broken.open(`${server.origin}/?file=broken.ted4`);
+  await broken.until(`!document.getElementById("message").hidden`);
+  const said = await broken.evaluate(`document.getElementById("message").textContent`);
+  assert.match(said, /broken\.ted4 is refused \(invalid\): con\.chunk-hash at byte \d+\n/);
+});
+
+test("the page that holds everything opens by file:// and plays", async (t) => {
+  const file = join(OUT, "scene.html");
+  execFileSync("node", [new URL("../export.mjs", import.meta.url).pathname, PLAYER, SCENE, file]);
+  const overhead = readFileSync(file).length - readFileSync(SCENE).length;
+  t.diagnostic(`${overhead} bytes more than the scene`);
+  assert.ok(overhead <= MOST_OVERHEAD);
+  const alone = await browser.page(CAMERA.width, CAMERA.height);
+  await alone.open(pathToFileURL(file).href);
+  await alone.until("globalThis.ted4Player?.isSettled");
+  await alone.press(" ", "Space");
+  await alone.until(`${POSITION} > 1`);
+  assert.deepEqual(alone.errors, []);
+});

@@ -1,0 +1,153 @@
+// page.test.mjs - what the page knows without a browser: chunks, cameras, time.
+// SPDX-License-Identifier: BSD-2-Clause
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { centreOf, fitted, forward, lookingAt, orbited } from "../page/camera.js";
+import { bytesByType, camerasOf, chunksOf, metaOf } from "../page/chunks.js";
+import { Clock } from "../page/clock.js";
+
+const IDENTITY = [1, 0, 0, 0, 1, 0, 0, 0, 1];
+
+function chunk(type, payload) {
+  const bytes = new Uint8Array(12 + payload.length + 8); // the hash is the decoder's to check
+  bytes.set(new TextEncoder().encode(type));
+  new DataView(bytes.buffer).setUint32(8, payload.length, true);
+  bytes.set(payload, 12);
+  return bytes;
+}
+
+function file(...chunks) {
+  return new Uint8Array([...new Uint8Array(12), ...chunks.flatMap((bytes) => [...bytes])]);
+}
+
+function cams({ up = [0, 0, 1], kind = 0, R = IDENTITY, width = 640, num = 1, den = 4 } = {}) {
+  const view = new DataView(new ArrayBuffer(100));
+  up.forEach((v, i) => view.setFloat32(4 * i, v, true));
+  view.setUint32(12, kind, true);
+  view.setUint32(16, 1, true);
+  view.setUint32(20, width, true);
+  view.setUint32(24, 480, true);
+  [500, 500, 320, 240, ...R, 1, 2, 3].forEach((v, i) => view.setFloat32(28 + 4 * i, v, true));
+  view.setUint32(92, num, true);
+  view.setUint32(96, den, true);
+  return chunk("CAMS", new Uint8Array(view.buffer));
+}
+
+test("chunks of a type are counted together, frames included", () => {
+  const rows = bytesByType(chunksOf(file(chunk("TILE", [1, 2]), chunk("TILE", [3]))));
+  assert.deepEqual(rows, [{ type: "TILE", count: 2, bytes: 43 }]);
+});
+
+test("META is lines of key and value", () => {
+  const meta = metaOf(chunksOf(file(chunk("META", new TextEncoder().encode("title=a=b\n")))));
+  assert.deepEqual([...meta], [["title", "a=b"]]);
+});
+
+test("CAMS gives up and cameras", () => {
+  const { up, cameras, path } = camerasOf(chunksOf(file(cams())));
+  assert.deepEqual(up, [0, 0, 1]);
+  assert.deepEqual(path, []);
+  assert.deepEqual(cameras, [{
+    width: 640, height: 480, fx: 500, fy: 500, cx: 320, cy: 240, R: IDENTITY, t: [1, 2, 3],
+    num: 1, den: 4,
+  }]);
+});
+
+test("of each kind the last CAMS counts", () => {
+  const { cameras, path } = camerasOf(chunksOf(
+    file(cams({ width: 1 }), cams({ width: 2 }), cams({ kind: 1, width: 3 }))));
+  assert.deepEqual([...cameras, ...path].map(({ width }) => width), [2, 3]);
+});
+
+for (const [what, change] of [
+  ["an up that is too long", { up: [0, 0, 2] }], ["an unknown kind", { kind: 2 }],
+  ["no rotation", { R: [1, 0, 0, 0, 1, 0, 0, 0, 2] }], ["no width", { width: 0 }],
+  ["a time after the end", { num: 5 }], ["an up that is no number", { up: [NaN, 0, 0] }],
+]) {
+  test(`CAMS with ${what} is ignored as a whole`, () => {
+    const { up, cameras } = camerasOf(chunksOf(file(cams(change))));
+    assert.deepEqual([up, cameras], [null, []]);
+  });
+}
+
+test("CAMS of another size than it says is ignored", () => {
+  assert.deepEqual(camerasOf(chunksOf(file(chunk("CAMS", new Uint8Array(21))))).cameras, []);
+  assert.deepEqual(camerasOf(chunksOf(file(chunk("CAMS", new Uint8Array(0))))).cameras, []);
+});
+
+function played(clock, milliseconds) {
+  clock.play(0);
+  clock.advance(milliseconds);
+  return clock.position;
+}
+
+test("time goes on by rate and speed, and loops after the last frame has been shown", () => {
+  const clock = new Clock();
+  clock.reset(10, 5);
+  assert.equal(played(clock, 1000), 5);
+  clock.reset(10, 5);
+  assert.equal(played(clock, 1900), 9);
+  clock.reset(10, 5);
+  assert.equal(played(clock, 2200), 1);
+  clock.reset(10, 5);
+  clock.speed = 0.5;
+  assert.equal(played(clock, 1000), 2.5);
+});
+
+test("without a loop time stops at the last frame, and starts again from the first", () => {
+  const clock = new Clock();
+  clock.reset(10, 5);
+  clock.isLooping = false;
+  assert.equal(played(clock, 5000), 9);
+  assert.equal(clock.isPlaying, false);
+  assert.equal(played(clock, 200), 1);
+});
+
+test("steps go to whole frames and stay within the scene", () => {
+  const clock = new Clock();
+  clock.reset(10, 5);
+  clock.seek(2.5);
+  clock.step(1);
+  assert.equal(clock.position, 3);
+  clock.seek(2.5);
+  clock.step(-1);
+  assert.equal(clock.position, 2);
+  clock.step(-5);
+  assert.equal(clock.position, 0);
+});
+
+test("queries of whole frames are exact, and a single frame has time 0", () => {
+  const clock = new Clock();
+  clock.reset(10, 5);
+  clock.seek(3);
+  const { num, den } = clock.query;
+  assert.equal(num * 9, 3 * den);
+  clock.reset(1, 5);
+  assert.deepEqual(clock.query, { num: 0, den: 1 });
+});
+
+function near(actual, expected) {
+  actual.forEach((v, i) => assert.ok(Math.abs(v - expected[i]) < 1e-9, `${actual}`));
+}
+
+const camera = lookingAt({ width: 4, height: 2, fx: 3, fy: 3, cx: 2, cy: 1 }, [0, -5, 1],
+  [0, 0, 1], [0, 0, 1]);
+
+test("a camera looks at its target, with up upwards", () => {
+  near(centreOf(camera), [0, -5, 1]);
+  near(forward(camera), [0, 1, 0]);
+  near(camera.R.slice(3, 6), [0, 0, -1]);
+});
+
+test("orbiting keeps the pivot before the camera, and stops below the pole", () => {
+  let turned = orbited(camera, [0, 0, 1], [0, 0, 1], 0.5, 0);
+  near(forward(turned), centreOf(turned).map((v, i) => ([0, 0, 1][i] - v) / 5));
+  for (let i = 0; i < 100; i++) turned = orbited(turned, [0, 0, 1], [0, 0, 1], 0, -0.1);
+  assert.ok(Math.abs(forward(turned)[2]) < 1);
+  assert.ok(Math.abs(forward(turned)[2]) > 0.9);
+});
+
+test("a picture of other sides shows all of the old one", () => {
+  const { fx, cx, cy, width, height } = fitted(camera, 8, 8);
+  assert.deepEqual([fx, cx, cy, width, height], [6, 4, 4, 8, 8]);
+});
