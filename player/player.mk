@@ -44,6 +44,7 @@ ESBUILD = NODE_PATH=$(abspath $(NPM)/node_modules) $(NPM)/node_modules/.bin/esbu
           --minify --format=iife --target=es2022 --log-level=warning
 PAGE_LICENCE = $(NPM)/node_modules/playcanvas/LICENSE
 PAGE_SRC = $(wildcard player/page/*.js player/src/*.js player/adapters/*.js)
+ADAPTERS = $(patsubst %,$W/adapters/%,index.html playcanvas.js spark.js supersplat.js)
 player: $(addprefix $W/,index.html style.css player.js ted4.wasm)
 $(NPM)/installed: player/package.json player/package-lock.json
 	@mkdir -p $(@D)
@@ -64,9 +65,16 @@ player-html: player
 	node player/export.mjs $W $(FILE) $(OUT)
 .PHONY: player player-html
 
-# The page in headless Chromium, with a small file that is trained for it.
+# The page, and those of the adapters, in headless Chromium, with a small file that is trained for
+# it.
 T       = $W/test
-test-player: player $T/occluder.ted4 $B/ted4dec
+$W/adapters/index.html: player/adapters/pages/index.html
+	@mkdir -p $(@D)
+	cp $< $@
+$W/adapters/%.js: player/adapters/pages/%.js $(PAGE_SRC) $(wildcard player/adapters/pages/*.js) \
+    $(NPM)/installed
+	$(ESBUILD) $< --outfile=$@
+test-player: player $(ADAPTERS) $T/occluder.ted4 $B/ted4dec
 	TED4_PLAYER=$(abspath $W) TED4_SCENE=$(abspath $T/occluder.ted4) TED4_OUT=$(abspath $T) \
 	TED4_DEC=$(abspath $B/ted4dec) node --test --test-concurrency=1 player/test/*.browser.mjs
 $T/occluder.ted4: | $B/ted4scene $B/ted4enc

@@ -1,0 +1,23 @@
+// spark.js - the Gaussians of a time as PackedSplats of Spark: 16 bytes each, with centres in
+// binary16 and the rest in 8 bits. The axes of the world stay right, down, forward; turn the mesh
+// if y is up. Draw with preBlurAmount 0.3, blurAmount 0 and sortRadial false (annex I).
+// SPDX-License-Identifier: BSD-2-Clause
+import { PackedSplats, setPackedSplat } from "@sparkjsdev/spark";
+
+// For n Gaussians: the splats of a SplatMesh, { packedSplats }.
+export function createPackedSplats(n) {
+  const packed = new PackedSplats();
+  packed.ensureSplats(n);
+  packed.numSplats = n;
+  return packed;
+}
+
+// Puts Gaussians (Scene.gaussians, ClientScene.gaussians) into packed. The mesh then needs
+// updateVersion().
+export function updatePackedSplats(packed, { n, mean, scale, rotation, opacity, colour }) {
+  const [x, y, z] = mean, [sx, sy, sz] = scale, [qw, qx, qy, qz] = rotation, [r, g, b] = colour;
+  for (let i = 0; i < n; i++)
+    setPackedSplat(packed.packedArray, i, x[i], y[i], z[i], sx[i], sy[i], sz[i],
+      qx[i], qy[i], qz[i], qw[i], opacity[i], r[i], g[i], b[i]);
+  packed.needsUpdate = true;
+}

@@ -1,0 +1,55 @@
+// adapters.browser.mjs - each adapter shows a file in headless Chromium with its pinned package.
+// SPDX-License-Identifier: BSD-2-Clause
+import assert from "node:assert/strict";
+import { basename, dirname, join } from "node:path";
+import { after, before, test } from "node:test";
+import { Browser } from "./browser.mjs";
+import { CAMERA, PLAYER, rendered, SCENE } from "./fixture.mjs";
+import { psnr } from "./pictures.mjs";
+import { serve } from "./server.mjs";
+
+const FRAMES = [3, 12], LAST = 15;
+let browser, server;
+
+before(async () => {
+  server = await serve(join(PLAYER, "adapters"), PLAYER, dirname(SCENE));
+  browser = new Browser();
+});
+
+after(async () => {
+  await browser?.close();
+  server?.close();
+});
+
+// Decibels of the adapter's pictures at two times.
+async function shown(t, adapter, option = "") {
+  const page = await browser.page(CAMERA.width, CAMERA.height);
+  await page.open(`${server.origin}/?adapter=${adapter}&file=${basename(SCENE)}${option}`);
+  const decibels = [];
+  for (const frame of FRAMES) {
+    await page.evaluate(`show(${JSON.stringify(CAMERA)}, ${frame})`);
+    decibels.push(await psnr(page, await page.screenshot(), rendered(frame / LAST)));
+  }
+  t.diagnostic(`${adapter}${option}: ${decibels.map((v) => v.toFixed(1)).join(", ")} dB`);
+  assert.deepEqual(page.errors, []);
+  return { page, least: Math.min(...decibels) };
+}
+
+test("PlayCanvas: a GSplatContainer", async (t) => {
+  assert.ok((await shown(t, "playcanvas")).least >= 40);
+});
+
+test("PlayCanvas: a GSplatContainer, drawn by its own shaders", async (t) => {
+  assert.ok((await shown(t, "playcanvas", "&plain")).least >= 20);
+});
+
+test("SuperSplat: a FrameSource", async (t) => {
+  const { page, least } = await shown(t, "supersplat");
+  assert.ok(least >= 40);
+  assert.equal(await page.evaluate("frameCount"), LAST + 1);
+  assert.deepEqual(await page.evaluate("rotation"), [0, 0, 1, 0]);
+});
+
+test("Spark: PackedSplats", async (t) => {
+  assert.ok((await shown(t, "spark")).least >= 30);
+});
