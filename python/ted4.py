@@ -79,7 +79,7 @@ class Ted4Error(ValueError):
 
 @dataclass(frozen=True)
 class Gaussians:
-    """The Gaussians of one time: binary32 arrays of n rows. World axes are right, down, forward;
+    """The Gaussians of one time: binary32 arrays of n rows. World axes are those of the scene;
     scales are standard deviations; rotations are w, x, y, z; colours are display-referred sRGB."""
     mean: np.ndarray        # (n, 3)
     scale: np.ndarray       # (n, 3)

@@ -19,6 +19,7 @@ typedef struct {
     ted4_info info;
     ted4_recon *recon;        /* owned */
     ted4_camera_list cameras; /* owned */
+    float up[3];              /* as the file says; all 0: unknown */
     json_t *report;           /* owned: what --json prints */
     int warned;
 } ted4_session;

@@ -9,7 +9,7 @@
 #include <stddef.h>
 #include <stdio.h>
 
-/* The Gaussians to write. World axes are right, down, forward (COLMAP); scales are linear;
+/* The Gaussians to write, in the axes of the scene or turned (turn.h); scales are linear;
  * rotations are w x y z; opacity is in [0, 1]. The arrays are borrowed. */
 typedef struct {
     size_t n;

@@ -10,6 +10,7 @@
 
 #include "actions.h"
 #include "cli.h"
+#include "file_cameras.h"
 
 static void print_element(void *user, size_t offset, const char *element, int64_t index,
                           int64_t value)
@@ -113,6 +114,7 @@ int ted4_action_open(ted4_session *s)
 
     if (scene != NULL) { /* the scene is freed once there is a recon */
         ted4_scene_info(scene, &s->info);
+        ted4_file_up(data, size, s->up);
         if (e.code != TED4_OK)
             tell_salvage(s, &what);
         e.code = ted4_recon_new(&s->recon, scene, &options);

@@ -1,7 +1,8 @@
 /* out_glb.c - binary glTF 2.0 with KHR_gaussian_splatting: one mesh of points, with one buffer view
  * of floats per attribute.
- * In glTF, +Y is up and cameras look along -Z; here, Y is down and Z is forward. Positions,
- * rotations and spherical harmonics are therefore rotated by 180 degrees about X. COLOR_0 is a
+ * In glTF, +Y is up and cameras look along -Z; programs for the other formats expect Y down and Z
+ * forward. So that all show a scene the same way up, positions, rotations and spherical harmonics
+ * are rotated by 180 degrees about X. COLOR_0 is a
  * fallback for viewers that do not support splats.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "export.h"

@@ -105,6 +105,19 @@ static ted4_status sample_kept(const ted4_sampler *s, const ted4_query *q, const
     return fit_colours(s, q, out, out->block + n * TED4_RECORD_FLOATS);
 }
 
+/* Turns what copy_kept and fit_colours have filled. */
+static void turn(const ted4_turn *t, ted4_sample *out)
+{
+    const size_t n = out->frame.n;
+    float *column[TED4_RECORD_FLOATS];
+
+    for (size_t k = 0; k < TED4_RECORD_FLOATS; k++)
+        column[k] = out->block + k * n;
+    ted4_turn_shapes(t, n, column, column + 6);
+    if (out->frame.sh != NULL)
+        ted4_sh_turn(out->frame.sh_degree, t->matrix, n, out->block + n * TED4_RECORD_FLOATS);
+}
+
 ted4_status ted4_sample_make(const ted4_sampler *s, uint32_t num, uint32_t den, ted4_sample *out)
 {
     const ted4_query q = { num, den, { s->camera[0], s->camera[1], s->camera[2] } };
@@ -114,6 +127,8 @@ ted4_status ted4_sample_make(const ted4_sampler *s, uint32_t num, uint32_t den, 
     *out = (ted4_sample) { .frame.comment = "" };
     if (status == TED4_OK)
         status = sample_kept(s, &q, &g, out);
+    if (status == TED4_OK && s->turn != NULL)
+        turn(s->turn, out);
     if (status != TED4_OK)
         ted4_sample_finish(out);
     return status;

@@ -7,14 +7,16 @@
 
 #include "export.h"
 #include "ted4.h"
+#include "turn.h"
 
 typedef struct {
     ted4_recon *recon;
     const ted4_info *info;
     const ted4_parallel *parallel;
-    float camera[3]; /* camera centre, used for everything except fitted colours */
+    float camera[3]; /* camera centre in the scene, used for everything except fitted colours */
     int sh_degree;   /* -1: no spherical harmonics */
-    int keep_all;    /* 0: Gaussians whose opacity is below 1/255 are dropped */
+    const ted4_turn *turn; /* rotation of the result; NULL: none */
+    int keep_all;          /* 0: Gaussians whose opacity is below 1/255 are dropped */
 } ted4_sampler;
 
 typedef struct {

@@ -25,6 +25,7 @@ static int refuse_degree(const ted4_settings *s)
 static int check_needs(const ted4_settings *s)
 {
     const int exports = s->output != NULL, queries = exports || s->hash;
+    const int turns = s->auto_up || s->up[0] != 0 || s->up[1] != 0 || s->up[2] != 0;
 
     if ((s->render != NULL) != (s->cameras != NULL))
         return refuse("--render and --camera", "both or none");
@@ -38,6 +39,10 @@ static int check_needs(const ted4_settings *s)
         return refuse("--camera-centre", "--hash needs --frames or --time as well");
     if (s->sh_degree >= 0 && !exports)
         return refuse("--sh-degree", "only with -o");
+    if (turns && !exports)
+        return refuse("--up", "only with -o");
+    if (turns && s->format == &ted4_format_raw)
+        return refuse("--up", ".raw holds the records as they were decoded");
     if (s->keep_all && !exports)
         return refuse("--keep-all", "only with -o");
     if (s->drop_faint && !exports)

@@ -15,6 +15,8 @@ typedef struct {
     int has_range, has_time;
     float centre[3];
     int has_centre;
+    float up[3];   /* direction of the scene that exports turn up; all 0: do not turn */
+    int auto_up;   /* 1: the file says which direction */
     int sh_degree; /* -1: not given */
     int threads;
     int64_t max_memory, max_work; /* limits for decoding and for a query; 0: not given */

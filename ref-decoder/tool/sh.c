@@ -158,6 +158,51 @@ int ted4_sh_fit(int degree, size_t n, ted4_sh_sampler sample, void *user, float 
     return r;
 }
 
+/* The matrix of a rotation for coefficients, found from the values of basis functions in the fit's
+ * directions, which determine the coefficients. Degrees do not mix. */
+static void turn_matrix(int degree, const double matrix[9],
+                        double turn[TED4_SH_MAX_COEFS][TED4_SH_MAX_COEFS])
+{
+    double weight[TED4_SH_MAX_COEFS][N_FIT];
+
+    fit_matrix(degree, weight);
+    memset(turn, 0, sizeof(double[TED4_SH_MAX_COEFS][TED4_SH_MAX_COEFS]));
+    for (int i = 0; i < N_FIT; i++) {
+        double d[3], before[3], basis[TED4_SH_MAX_COEFS];
+
+        spiral_direction(i, N_FIT, 0.0, d);
+        for (int c = 0; c < 3; c++)
+            before[c] = matrix[c] * d[0] + matrix[3 + c] * d[1] + matrix[6 + c] * d[2];
+        ted4_sh_basis(before, degree, basis);
+        for (int l = 0; l <= degree; l++)
+            for (int k = l * l; k < ted4_sh_count(l); k++)
+                for (int j = l * l; j < ted4_sh_count(l); j++)
+                    turn[k][j] += weight[k][i] * basis[j];
+    }
+    turn[0][0] = 1.0;
+}
+
+void ted4_sh_turn(int degree, const double matrix[9], size_t n, float *sh)
+{
+    const int n_coefs = ted4_sh_count(degree);
+    double turn[TED4_SH_MAX_COEFS][TED4_SH_MAX_COEFS];
+
+    turn_matrix(degree, matrix, turn);
+    for (size_t i = 0; i < 3 * n; i++, sh += n_coefs) {
+        double out[TED4_SH_MAX_COEFS];
+
+        for (int l = 0; l <= degree; l++) {
+            for (int k = l * l; k < ted4_sh_count(l); k++) {
+                out[k] = 0.0;
+                for (int j = l * l; j < ted4_sh_count(l); j++)
+                    out[k] += turn[k][j] * (double)sh[j];
+            }
+        }
+        for (int k = 0; k < n_coefs; k++)
+            sh[k] = (float)out[k];
+    }
+}
+
 void ted4_sh_constant(int degree, size_t n, const float *const colour[3], float *sh)
 {
     const size_t n_coefs = (size_t)ted4_sh_count(degree);

@@ -32,6 +32,10 @@ typedef int (*ted4_sh_sampler)(void *user, const double direction[3], float *con
  * memory. */
 int ted4_sh_fit(int degree, size_t n, ted4_sh_sampler sample, void *user, float *sh, double *rms);
 
+/* Turns harmonics in place, as directions are turned by matrix (a rotation, row by row): the colour
+ * in direction matrix d is afterwards what it was in direction d. sh: [n][3][(degree + 1)^2]. */
+void ted4_sh_turn(int degree, const double matrix[9], size_t n, float *sh);
+
 /* Sets the coefficients for colours that do not depend on direction. */
 void ted4_sh_constant(int degree, size_t n, const float *const colour[3], float *sh);
 

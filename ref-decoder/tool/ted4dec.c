@@ -22,6 +22,7 @@ enum {
     OPT_TIME,
     OPT_CENTRE,
     OPT_SH_DEGREE,
+    OPT_UP,
     OPT_KEEP_ALL,
     OPT_DROP_FAINT,
     OPT_RENDER,
@@ -57,6 +58,10 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
     [OPT_SH_DEGREE] = { 0, "sh-degree", "N",
                         "spherical harmonics that stand for view-dependent colours, 0 to 3. "
                         "Default 1, if colours depend on the view" },
+    [OPT_UP] = { 0, "up", "AXIS",
+                 "turn what -o writes so that this axis of the scene is up in viewers: x, y, z, "
+                 "-x, "
+                 "-y, -z, or auto: as the file says (ted4info shows it)" },
     [OPT_KEEP_ALL] = { 0, "keep-all", NULL,
                        "also write Gaussians whose opacity is below 1/255. Default where the name "
                        "holds a %d, so that all files of a sequence have the same Gaussians" },
@@ -168,6 +173,21 @@ static int set_bound(const char *name, const char *value, int64_t *out)
                : 0;
 }
 
+static int set_up(ted4_settings *s, const char *value)
+{
+    const int negative = value[0] == '-';
+    const char *const axis = value + negative;
+
+    s->auto_up = strcmp(value, "auto") == 0;
+    memset(s->up, 0, sizeof s->up);
+    if (s->auto_up)
+        return 0;
+    if (axis[0] < 'x' || axis[0] > 'z' || axis[1] != '\0')
+        return bad_value("up", value, "x, y, z, -x, -y, -z or auto");
+    s->up[axis[0] - 'x'] = negative ? -1.0f : 1.0f;
+    return 0;
+}
+
 static int set_option(ted4_settings *s, int option, const char *value)
 {
     switch (option) {
@@ -193,6 +213,7 @@ static int set_option(ted4_settings *s, int option, const char *value)
                    ? 0
                    : bad_value("camera-centre", value, "three numbers X,Y,Z");
     case OPT_SH_DEGREE: return set_number("sh-degree", value, TED4_SH_MAX_DEGREE, &s->sh_degree);
+    case OPT_UP: return set_up(s, value);
     case OPT_RENDER:
         s->render = value;
         return ted4_has_suffix(value, ".png")

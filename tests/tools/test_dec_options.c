@@ -99,6 +99,10 @@ static void test_usage(void **state)
         { "v1.ted4 --time 0", "--time: only with -o or --hash" },
         { "v1.ted4 --test --frames 0", "--frames: only with -o or --hash" },
         { "v1.ted4 --keep-all", "--keep-all: only with -o" },
+        { "v1.ted4 --up z", "--up: only with -o" },
+        { "v1.ted4 --up z --time 0 -o a.raw", ".raw holds the records as they were decoded" },
+        { "v1.ted4 --up up --time 0 -o a.ply", "--up: bad value up; expected x, y, z, -x, -y" },
+        { "v1.ted4 --up auto --time 0 -o a.ply", "does not say which way is up" },
         { "v1.ted4 --drop-faint", "--drop-faint: only with -o" },
         { "v1.ted4 -o a.ply --time 0 --keep-all --drop-faint", "only one of them" },
         { "v1.ted4 --hash --sh-degree 1", "--sh-degree: only with -o" },
@@ -140,12 +144,69 @@ static void test_default_degree(void **state)
     }
 }
 
+/* Z up in the scene: exports have -Y up, with the same records; glTF has +Y up. */
+static void test_up(void **state)
+{
+    size_t size, raw_size;
+
+    (void)state;
+    need_programs();
+    assert_int_equal(run("ted4dec v1.ted4 -o z.splat --time 0 --up z --sh-degree 0"), 0);
+    assert_int_equal(run("ted4dec v1.ted4 -o z%%d.splat --time 0 --up z --sh-degree 0"), 0);
+    assert_int_equal(run("ted4dec v1.ted4 -o z.raw --time 0 --keep-all"), 0);
+    uint8_t *const splat = contents("z0.splat", &size), *const raw = contents("z.raw", &raw_size);
+
+    for (size_t i = 0; i < file[1].info.n_gaussians; i++) {
+        float from[3], to[3];
+
+        memcpy(from, raw + i * 56, sizeof from);
+        memcpy(to, splat + i * 32, sizeof to);
+        assert_true(to[0] == from[0]);
+        assert_true(to[1] == -from[2]);
+        assert_true(to[2] == from[1]);
+    }
+    free(splat);
+    free(raw);
+    /* What the file says is what the option says; without it, a note tells. */
+    assert_int_equal(run("ted4edit v1.ted4 -o up.ted4 --up 0,0,1"), 0);
+    assert_int_equal(run("ted4dec up.ted4 -o auto.ply --time 0 --up auto && "
+                         "ted4dec v1.ted4 -o z.ply --time 0 --up z && cmp auto.ply z.ply && "
+                         "grep -qa 'comment world axes: .*turned so that 0 0 1 of the' z.ply && "
+                         "ted4dec v1.ted4 -o g.glb --time 0 --up z && "
+                         "ted4dec up.ted4 -o note.ply --time 0 2>note && "
+                         "grep -q 'note: up is 0 0 1 in this scene.*--up auto' note && "
+                         "grep -qa 'comment world axes: .*of the scene: up is 0 0 1' note.ply"),
+                     0);
+    /* glTF: position (x, y, z) of a scene with Z up becomes (x, z, -y), and scales follow. */
+    uint8_t *const glb = contents("g.glb", &size);
+    char *const low = strstr((char *)glb + 20, "\"min\":[");
+    double box[3];
+
+    assert_non_null(low);
+    assert_int_equal(sscanf(low + 7, "%lf,%lf,%lf", &box[0], &box[1], &box[2]), 3);
+    uint8_t *const kept = contents("z.ply", &size);
+    const uint8_t *const values = (uint8_t *)strstr((char *)kept, "end_header\n") + 11;
+    const size_t record = 4 * (17 + 9);
+    double least = 1e30;
+
+    for (const uint8_t *p = values; p < kept + size; p += record) {
+        float y;
+
+        memcpy(&y, p + 4, sizeof y);
+        least = -(double)y < least ? -(double)y : least; /* in PLY, -y is up */
+    }
+    assert_true(least == box[1] || (float)least == (float)box[1]);
+    free(glb);
+    free(kept);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_verdicts),
         cmocka_unit_test(test_usage),
         cmocka_unit_test(test_default_degree),
+        cmocka_unit_test(test_up),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }

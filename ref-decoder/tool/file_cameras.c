@@ -1,0 +1,19 @@
+/* file_cameras.c - see file_cameras.h.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "file_cameras.h"
+
+#include <string.h>
+
+#include "chunks.h"
+
+void ted4_file_up(const uint8_t *file, size_t size, float up[3])
+{
+    ted4_chunk_view chunk;
+    ted4_cams c;
+
+    memset(up, 0, 3 * sizeof *up);
+    for (size_t at = TED4_FILE_HEADER; ted4_chunks_next(file, size, &at, &chunk);)
+        if (strcmp(chunk.type, "CAMS") == 0 && ted4_cams_read(chunk.payload, chunk.size, &c) == 0 &&
+            (c.up[0] != 0 || c.up[1] != 0 || c.up[2] != 0))
+            memcpy(up, c.up, sizeof c.up);
+}
