@@ -122,7 +122,7 @@ $B/tests/tools/test_belongs: $(addprefix $B/ref-encoder/tool/,belongs.o sheet.o)
 $B/tests/tools/test_edit: $B/ref-encoder/tool/edit.o
 $B/tests/tools/test_estimate: $B/ref-encoder/tool/estimate.o
 $B/tests/tools/test_install $B/tests/tools/test_library: | $(PROGS) $(SHARED) $B/ted4conf \
-        $B/ted4tolerance
+        $B/ted4tolerance man
 $B/tests/tools/test_verify: $B/ref-encoder/tool/verify.o
 $(addprefix $B/tests/encoder/test_starved_,trainer writer): override LDFLAGS += \
         -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=aligned_alloc
@@ -173,7 +173,7 @@ asan:
 
 include ref-decoder/library.mk tests/spec/spec.mk tests/strict.mk bench/bench.mk fuzz/fuzz.mk
 include conformance/conf.mk conformance/reader/reader.mk conformance/cross/cross.mk
-include player/player.mk
+include player/player.mk tools/pages/pages.mk
 
 DEPS     = gcc libc6-dev libcmocka-dev libjansson-dev libjpeg62-turbo-dev libpng-dev libxxhash-dev \
            python3 zlib1g-dev
@@ -192,7 +192,7 @@ deps-dev: deps
 
 # The other libraries have no public header.
 PREFIX  ?= /usr/local
-install: all install-library
+install: all install-library install-pages
 	install -d $(DESTDIR)$(PREFIX)/bin
 	install $(PROGS) $B/ted4conf $B/ted4tolerance $(DESTDIR)$(PREFIX)/bin
 

@@ -21,6 +21,10 @@ wanted=$(echo $(sed -n 's/^    \(ted4[a-z]*\) .*/\1/p' doc/programs.md) ted4scen
 if [ "$(ls "$usr/bin")" = "$wanted" ]; then ok programs; else fail programs "$(ls "$usr/bin")"; fi
 if [ "$(echo $(ls "$usr/lib"))" = "cmake libted4dec.a libted4dec.so libted4dec.so.1 pkgconfig" ]; \
     then ok libraries; else fail libraries "$(ls "$usr/lib")"; fi
+for f in man/man1/ted4enc.1 bash-completion/completions/ted4enc zsh/site-functions/_ted4 \
+    fish/vendor_completions.d/ted4enc.fish mime/packages/ted4.xml ted4/ted4.magic; do
+    if [ -s "$usr/share/$f" ]; then ok "share_${f##*/}"; else fail "share_${f##*/}" missing; fi
+done
 
 cat >"$out/user.c" <<'C'
 #include <ted4/ted4.h>

@@ -1,0 +1,41 @@
+# Manual pages and shell completion, from the tables of options from which programs make their help
+# text; included by the Makefile. A program that is linked with tools/pages writes its own.
+PAGES_OBJ  = $(patsubst %.c,$B/%.o,$(wildcard tools/pages/*.c))
+PAGES_LINK = $(CC) -fopenmp $(LDFLAGS) -Wl,--wrap=ted4_arguments_next $^ -o $@ $(LIBS)
+PAGES_PROG = $(addprefix $B/pages/,$(DEC_PROG) $(ENC_PROG) ted4conf ted4scene)
+
+$(PAGES_PROG): | $B/pages
+$B/pages:
+	@mkdir -p $@
+$(DEC_PROG:%=$B/pages/%): $B/pages/%: $B/ref-decoder/tool/%.o $(PAGES_OBJ) \
+        $(DEC_TOOL:%.c=$B/%.o) $(DEC_LIB)
+	$(PAGES_LINK)
+$(ENC_PROG:%=$B/pages/%): $B/pages/%: $B/ref-encoder/tool/%.o $(PAGES_OBJ) \
+        $(ENC_TOOL:%.c=$B/%.o) $(DEC_TOOL:%.c=$B/%.o) $(ENC_LIB)
+	$(PAGES_LINK)
+$B/pages/ted4conf: $(CONF_OBJ) $(PAGES_OBJ) $(CLASS_T_OBJ) $(ENC_LIB)
+	$(PAGES_LINK)
+$B/pages/ted4scene: $B/tools/scene/ted4scene.o $(SCENE_SRC:%.c=$B/%.o) $(PAGES_OBJ) \
+        $(DEC_TOOL:%.c=$B/%.o) $(ENC_LIB)
+	$(PAGES_LINK)
+
+$B/pages/written: $(PAGES_PROG) $(wildcard tools/pages/*.sh tools/pages/*.1) CITATION.cff
+	sh tools/pages/write.sh $B
+	@touch $@
+man: $B/pages/written
+
+# What desktops and file(1) need to know the format is in share/ too; see doc/install.md.
+SHARE = $(DESTDIR)$(PREFIX)/share
+install-pages: man
+	install -d $(SHARE)/man/man1 $(SHARE)/bash-completion/completions \
+	    $(SHARE)/zsh/site-functions $(SHARE)/fish/vendor_completions.d \
+	    $(SHARE)/mime/packages $(SHARE)/ted4
+	install -m 644 $B/man/*.1 $(SHARE)/man/man1
+	install -m 644 $B/completion/bash/* $(SHARE)/bash-completion/completions
+	install -m 644 $B/completion/zsh/* $(SHARE)/zsh/site-functions
+	install -m 644 $B/completion/fish/* $(SHARE)/fish/vendor_completions.d
+	install -m 644 tools/ted4.xml $(SHARE)/mime/packages
+	install -m 644 tools/ted4.magic $(SHARE)/ted4
+
+$B/tests/tools/test_manual: | man
+.PHONY: man install-pages
