@@ -17,9 +17,10 @@ $(SHARED): $(call OBJECTS,$(DEC_SRC)) $B/libted4dec.map
 	    $(filter %.o,$^) -o $@ -lxxhash -lz -lm
 library: $(SHARED) $B/libted4dec.a
 
-# $(1): a template; its @NAME@ become what they are here.
-FILL = sed 's|@VERSION@|$(VERSION:-dev=)|; s|@PREFIX@|$(PREFIX)|; s|@SONAME@|$(SONAME)|; \
-    s|@LIBDIR@|$${prefix}$(LIBDIR:$(PREFIX)%=%)|'
+# Turns a template's @NAME@ into what they are here. @UP@ leads from LIBDIR to PREFIX.
+FILL = up=$$(echo '$(LIBDIR:$(PREFIX)%=%)' | sed 's|/[^/]*|/..|g'); \
+    sed 's|@VERSION@|$(VERSION:-dev=)|; s|@PREFIX@|$(PREFIX)|; s|@SONAME@|$(SONAME)|; \
+    s|@LIBDIR@|$${prefix}$(LIBDIR:$(PREFIX)%=%)|; '"s|@UP@|$$up|"
 install-library: library
 	install -d $(DESTDIR)$(LIBDIR)/pkgconfig $(DESTDIR)$(LIBDIR)/cmake/ted4 \
 	    $(DESTDIR)$(PREFIX)/include/ted4/base

@@ -102,6 +102,13 @@ CMAKE
     for kind in ted4dec ted4dec_static; do
         expect "cmake_$kind" 0 "$hash" "$out/made/with_$kind" "$vector"
     done
+    # Where each architecture has a folder of libraries.
+    make install-library B="$TED4_BUILD" DESTDIR="$out/multi" PREFIX=/usr LIBDIR=/usr/lib/triplet \
+        >"$out/said" 2>&1
+    if cmake -S "$out/project" -B "$out/made2" >>"$out/said" 2>&1 \
+        -Dted4_DIR="$out/multi/usr/lib/triplet/cmake/ted4" &&
+        cmake --build "$out/made2" >>"$out/said" 2>&1; then ok cmake_triplet
+    else fail cmake_triplet "$(cat "$out/said")"; fi
 else
     skip cmake "there is no cmake"
 fi
