@@ -27,6 +27,9 @@ if has nm; then
     if cmp -s "$out/symbols" ref-decoder/libted4dec.symbols; then ok symbols
     else fail symbols "$(diff "$out/symbols" ref-decoder/libted4dec.symbols)"; fi
     readelf -d "$shared" >"$out/dynamic"
+    sed -n 's/^ \(ted4_[a-z0-9_]*\)@TED4_1 .*/\1/p' debian/libted4dec1.symbols >"$out/debian"
+    if cmp -s "$out/debian" ref-decoder/libted4dec.symbols; then ok debian_symbols
+    else fail debian_symbols "$(diff "$out/debian" ref-decoder/libted4dec.symbols)"; fi
     check soname "$out/dynamic" "Library soname: [libted4dec.so.1]"
     if grep -q TEXTREL "$out/dynamic"; then fail position_independent TEXTREL
     else ok position_independent; fi

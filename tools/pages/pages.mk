@@ -26,13 +26,16 @@ man: $B/pages/written
 
 # What desktops and file(1) need to know the format is in share/ too; see doc/install.md.
 SHARE = $(DESTDIR)$(PREFIX)/share
+ZSH_COMPLETIONS ?= $(PREFIX)/share/zsh/site-functions
 install-pages: man
 	install -d $(SHARE)/man/man1 $(SHARE)/bash-completion/completions \
-	    $(SHARE)/zsh/site-functions $(SHARE)/fish/vendor_completions.d \
+	    $(DESTDIR)$(ZSH_COMPLETIONS) $(SHARE)/fish/vendor_completions.d \
 	    $(SHARE)/mime/packages $(SHARE)/ted4
 	install -m 644 $B/man/*.1 $(SHARE)/man/man1
-	install -m 644 $B/completion/bash/* $(SHARE)/bash-completion/completions
-	install -m 644 $B/completion/zsh/* $(SHARE)/zsh/site-functions
+	install -m 644 $B/completion/bash/ted4dec $(SHARE)/bash-completion/completions
+	for p in $(notdir $(filter-out %/ted4dec,$(PAGES_PROG))); do \
+	    ln -sf ted4dec $(SHARE)/bash-completion/completions/$$p || exit; done
+	install -m 644 $B/completion/zsh/* $(DESTDIR)$(ZSH_COMPLETIONS)
 	install -m 644 $B/completion/fish/* $(SHARE)/fish/vendor_completions.d
 	install -m 644 tools/ted4.xml $(SHARE)/mime/packages
 	install -m 644 tools/ted4.magic $(SHARE)/ted4

@@ -1,0 +1,25 @@
+#!/bin/sh
+# make-deb.sh FOLDER - builds the Debian packages of the last commit in a copy of it below FOLDER,
+# which is made anew, and leaves them there. It needs dpkg-dev, debhelper and what debian/control
+# names; it takes nothing from the network.
+# SPDX-License-Identifier: BSD-2-Clause
+set -eu
+folder=$1
+complain() { echo "make-deb.sh: $1" >&2; exit 1; }
+command -v dh >/dev/null || complain "there is no debhelper (make deps-deb)"
+git rev-parse --verify -q HEAD >/dev/null || complain "this is no git repository with a commit"
+copy=$folder/ted4-$(sed -n '1s/.*(\(.*\)).*/\1/p' debian/changelog)
+rm -rf "$folder"
+mkdir -p "$copy"
+git archive HEAD | tar -x -C "$copy"
+cd "$copy"
+# Variables of the make that calls this are not for the one in there.
+env -u MAKEFLAGS -u MAKEOVERRIDES -u MFLAGS -u CFLAGS -u LDFLAGS \
+    dpkg-buildpackage -us -uc -Jauto
+cd ..
+rm -rf "${copy##*/}"
+if command -v lintian >/dev/null; then
+    lintian --fail-on error,warning ./*.changes
+else
+    echo "make-deb.sh: lintian: skipped, it is not here"
+fi
