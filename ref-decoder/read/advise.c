@@ -14,7 +14,7 @@
 #include "read/advise_parts.h"
 #include "read/inflate.h"
 
-enum { MINOR_AT = 9, LEVEL_AT = 11, HEAD_AT = 12, LATEST_MINOR = 1 };
+enum { MINOR_AT = 9, LEVEL_AT = 11, HEAD_AT = 12 };
 
 /* An element of HEAD that is not an array, and its offset in the file. */
 typedef struct {
@@ -115,6 +115,7 @@ static void advise_blob(ted4_findings *f, const ted4_blob *b, const ted4_chunk_p
 static void advise_chunks(ted4_findings *f, const ted4_scene *s, ted4_arena *a)
 {
     ted4_reader r;
+    int minor = 0; /* the lowest that has the file's chunk types (R-CON-007) */
 
     ted4_reader_init(&r, f->data, TED4_FILE_HEADER_SIZE, f->size, 1);
     while (r.base.pos < f->size) {
@@ -124,10 +125,12 @@ static void advise_chunks(ted4_findings *f, const ted4_scene *s, ted4_arena *a)
         case TED4_NETE: advise_blob(f, &s->nete, &p, a); break;
         case TED4_NETR: advise_blob(f, &s->netr, &p, a); break;
         case TED4_BANK: advise_blob(f, &s->bank, &p, a); break;
-        case TED4_CHUNKS: ted4_advise_ancillary(f, &p, a); break;
+        case TED4_CHUNKS: minor |= ted4_advise_ancillary(f, &p, a); break;
         default: break;
         }
     }
+    if (f->data[MINOR_AT] != minor)
+        ted4_find_advice(f, TED4_ADV_MINOR, NULL, MINOR_AT, 2, f->data[MINOR_AT], minor);
 }
 
 static void advise_masks(ted4_findings *f, const ted4_scene *s)
@@ -221,8 +224,6 @@ void ted4_advise(ted4_findings *f, const ted4_scene *s, const ted4_options *o)
     const unsigned lowest = ted4_level_lowest(&s->head, &s->shape, f->size);
     ted4_arena a;
 
-    if (f->data[MINOR_AT] > LATEST_MINOR)
-        ted4_find_advice(f, TED4_ADV_MINOR, NULL, MINOR_AT, 1, f->data[MINOR_AT], 0);
     if (s->level != lowest)
         ted4_find_advice(f, TED4_ADV_LEVEL, NULL, LEVEL_AT, 2, s->level, lowest);
     ted4_arena_init(&a, o);

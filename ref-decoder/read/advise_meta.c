@@ -149,7 +149,7 @@ static void advise_text(ted4_findings *f, const ted4_chunk_place *p, ted4_arena 
     ted4_arena_release(a, l.again);
 }
 
-void ted4_advise_ancillary(ted4_findings *f, const ted4_chunk_place *p, ted4_arena *a)
+int ted4_advise_ancillary(ted4_findings *f, const ted4_chunk_place *p, ted4_arena *a)
 {
     const uint8_t *type = f->data + p->at;
     const uint32_t flags = ted4_load32(type + 4);
@@ -158,13 +158,14 @@ void ted4_advise_ancillary(ted4_findings *f, const ted4_chunk_place *p, ted4_are
         if (flags != META_FLAGS)
             ted4_find_advice(f, TED4_ADV_META_FLAGS, "META", p->at + 4, 1, flags, 0);
         advise_text(f, p, a);
-        return;
+        return 0;
     }
     if (memcmp(type, "CAMS", 4) == 0 || memcmp(type, "THMB", 4) == 0) {
         if (flags != 0)
             ted4_find_advice(f, TED4_ADV_CHUNK_FLAGS, NULL, p->at + 4, 1, flags, 0);
-        return;
+        return 1;
     }
     ted4_find_advice(f, type[0] == 'x' ? TED4_ADV_PRIVATE : TED4_ADV_CHUNK, NULL, p->at, 2, flags,
                      (int64_t)(p->end - p->payload));
+    return 0;
 }

@@ -113,8 +113,6 @@ static void advice_on_files(void **state)
     data = encoded(s, 0, &size);
     expect(data, size, TED4_ADV_MINOR, 0);
     data[9] = 1;
-    expect(data, size, TED4_ADV_MINOR, 0);
-    data[9] = 2;
     expect(data, size, TED4_ADV_MINOR, 1);
     free(data);
     ted4_scene_free(s);
@@ -163,6 +161,11 @@ static void advice_on_chunks(void **state)
     }
     expect_chunk(data, size, "META", 2, "a=1\nb=2\na=3\n", TED4_ADV_META_KEY, 1);
     expect_chunk(data, size, "META", 0, "a=1\n", TED4_ADV_META_FLAGS, 1);
+    expect_chunk(data, size, "CAMS", 0, "", TED4_ADV_MINOR, 1);
+    data[9] = 1;
+    expect_chunk(data, size, "CAMS", 0, "", TED4_ADV_MINOR, 0);
+    expect_chunk(data, size, "THMB", 0, "", TED4_ADV_MINOR, 0);
+    expect_chunk(data, size, "META", 2, "a=1\n", TED4_ADV_MINOR, 1);
     expect_chunk(data, size, "CAMS", 0, "", TED4_ADV_CHUNK, 0);
     expect_chunk(data, size, "CAMS", 0, "", TED4_ADV_CHUNK_FLAGS, 0);
     expect_chunk(data, size, "CAMS", 2, "", TED4_ADV_CHUNK_FLAGS, 1);
