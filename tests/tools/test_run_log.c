@@ -220,7 +220,7 @@ static void test_rollback(void **state)
         "value of offset of anchor 5 is not finite at step 300; there is no good state before it");
     read_text("out/l", text, sizeof text);
     assert_non_null(strstr(text, "\"event\":\"failure\",\"rollbacks\":0,\"failed\":300,"));
-    expect_files("c l x");
+    expect_files("c l x.ted4");
 }
 
 /* Works until the processor's clock has advanced by seconds, as the log measures it. */

@@ -55,7 +55,7 @@ equal fixed_log "$(logged fixed)" 0
 equal fixed_file "$("$TED4_BUILD/ted4info" "$out/fixed.ted4" --why | grep '^capacity')" \
     "capacity=fixed; lambda 0.002"
 "$TED4_BUILD/ted4enc" "$out/scene" -o "$out/x.ted4" --capacity some 2>"$out/err"
-equal refused "$?:$(cat "$out/err")" '3:ted4enc: --capacity: bad value some'
+equal refused "$?:$(cat "$out/err")" '3:ted4enc: --capacity: bad value some; expected auto or fixed'
 
 # Flickering light gets a row of the bank for every time; other scenes get one for every second
 # time.
