@@ -93,6 +93,11 @@ static const text_seed other_json[] = {
       ","
       "\"t\":[0,0,4],\"frame\":0}]" },
     { "camera_list", "empty.json", PLAIN, "[]" },
+    { "camera_list", "transforms.json", PLAIN,
+      "{\"w\":4,\"h\":3,\"camera_angle_x\":1,\"applied_transform\":[[1,0,0,2],[0,0,1,0],[0,-1,0,0]]"
+      ","
+      "\"frames\":[{\"time\":0.5,\"cx\":1,\"transform_matrix\":[[1,0,0,0],[0,1,0,0],[0,0,1,4],"
+      "[0,0,0,1]]}]}" },
     { "camera_list", "no_rotation.json", PLAIN,
       "[{\"width\":4,\"height\":3,\"fx\":2,\"fy\":2,\"cx\":2,\"cy\":1,\"R\":[1,0,0,0,2,0,0,0,1]}"
       "]" },

@@ -24,7 +24,7 @@ FUZZ_OBJ      = $(patsubst %.c,$B/%.o,fuzz/fix_hashes.c fuzz/parse.c)
 FUZZ_CODEC    = $(patsubst %.c,$B/%.o,$(DEC_SRC) \
                 $(wildcard ref-encoder/math/*.c ref-encoder/write/*.c)) $(FUZZ_OBJ)
 FUZZ_SCENE    = $(patsubst %.c,$B/%.o,$(wildcard ref-encoder/data/*.c) \
-                ref-decoder/tool/camera_list.c ref-decoder/tool/read_file.c \
+                $(addprefix ref-decoder/tool/,camera_list.c camera_transforms.c read_file.c) \
                 ref-decoder/tool/times.c fuzz/scene_folder.c)
 FUZZ_MUTATE   = $B/fuzz/mutate.o $B/fuzz/fields.o
 # Inputs that are .ted4 files have a mutator that knows them.

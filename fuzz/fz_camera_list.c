@@ -1,6 +1,6 @@
-/* fz_camera_list.c - the JSON list of cameras of ted4dec --render. Claims: the result is either
- * cameras with sizes, focal lengths and rotations that the renderer accepts, each with a frame or a
- * time in [0, 1]; or a message of one line, and no camera.
+/* fz_camera_list.c - the cameras of ted4dec --render, as a JSON list or a transforms file. Claims:
+ * the result is either cameras with sizes, focal lengths and rotations that the renderer accepts,
+ * each with a frame, a time in [0, 1], or neither; or a message of one line, and no camera.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <string.h>
@@ -18,7 +18,7 @@ static void check_camera(const ted4_listed_camera *c)
     for (int i = 0; i < 9; i++)
         fuzz_require(isfinite(v->R[i]) && isfinite(lens[i % 4]) && isfinite(v->t[i % 3]), "finite");
     fuzz_require(v->fx > 0 && v->fy > 0, "focal lengths");
-    fuzz_require(c->has_frame || (c->time.den > 0 && c->time.num <= c->time.den), "a time");
+    fuzz_require(c->has_frame || c->time.num <= c->time.den, "a time");
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)

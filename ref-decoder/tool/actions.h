@@ -6,8 +6,8 @@
 
 #include "session.h"
 
-/* open_scene.c: decodes the input and fills info and recon. With --lenient, a damaged input is
- * decoded as far as possible. */
+/* open_scene.c: decodes the input and fills data, info and recon. With --lenient, a damaged input
+ * is decoded as far as possible. */
 int ted4_action_open(ted4_session *s);
 
 /* Checks that the requested frames are in the file, and that no output file exists unless -f is

@@ -3,12 +3,14 @@
 #include "camera_list.h"
 
 #include <errno.h>
+#include <inttypes.h>
 #include <jansson.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "camera_transforms.h"
 #include "cli.h"
 
 enum { MAX_SIDE = 16384, TIME_DENOMINATOR = 10000000 };
@@ -51,7 +53,7 @@ static int get_side(const json_t *o, const char *key, int *out)
     return 1;
 }
 
-static int is_rotation(const float R[9])
+int ted4_is_rotation(const float R[9])
 {
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++) {
@@ -59,7 +61,7 @@ static int is_rotation(const float R[9])
 
             for (int k = 0; k < 3; k++)
                 dot += (double)R[3 * i + k] * (double)R[3 * j + k];
-            if (fabs(dot - (i == j)) > ROTATION_TOLERANCE)
+            if (!(fabs(dot - (i == j)) <= ROTATION_TOLERANCE))
                 return 0;
         }
     }
@@ -71,7 +73,9 @@ static int get_time(const json_t *o, ted4_listed_camera *c)
     const json_t *const frame = json_object_get(o, "frame");
     const json_t *const time = json_object_get(o, "time");
 
-    if ((frame != NULL) == (time != NULL))
+    if (frame == NULL && time == NULL)
+        return 1;
+    if (frame != NULL && time != NULL)
         return 0;
     if (frame != NULL) {
         const json_int_t n = json_integer_value(frame);
@@ -104,11 +108,11 @@ static const char *get_camera(const json_t *o, ted4_listed_camera *c)
         return "needs fx and fy above 0";
     if (!get_number(o, "cx", &v->cx) || !get_number(o, "cy", &v->cy))
         return "needs cx and cy";
-    if (!get_numbers(o, "R", 9, v->R) || !is_rotation(v->R))
+    if (!get_numbers(o, "R", 9, v->R) || !ted4_is_rotation(v->R))
         return "needs R, a rotation of 9 numbers";
     if (!get_numbers(o, "t", 3, v->t))
         return "needs t, 3 numbers";
-    return get_time(o, c) ? NULL : "needs either frame, a whole number, or time, from 0 to 1";
+    return get_time(o, c) ? NULL : "needs frame, a whole number, or time, from 0 to 1, or neither";
 }
 
 /* Returns the JSON text in a file, or NULL with why filled. */
@@ -138,8 +142,16 @@ int ted4_camera_list_load(ted4_camera_list *l, const char *path, char *why, size
     *l = (ted4_camera_list) { NULL, 0 };
     if (list == NULL)
         return -1;
+    if (json_is_array(json_object_get(list, "frames"))) {
+        const int code = ted4_transforms_read(list, path, l, why, why_size);
+
+        json_decref(list);
+        if (code != 0)
+            ted4_camera_list_free(l);
+        return code;
+    }
     if (!json_is_array(list) || json_array_size(list) == 0)
-        wrong = "the file is not a list of cameras";
+        wrong = "expected a list of cameras, or frames as in transforms_train.json";
     else
         l->camera = calloc(json_array_size(list), sizeof *l->camera);
     if (wrong == NULL && l->camera == NULL)
@@ -162,4 +174,36 @@ void ted4_camera_list_free(ted4_camera_list *l)
 {
     free(l->camera);
     *l = (ted4_camera_list) { NULL, 0 };
+}
+
+static json_t *numbers(const float *v, int n)
+{
+    json_t *const list = json_array();
+
+    for (int i = 0; i < n; i++)
+        json_array_append_new(list, json_real((double)v[i]));
+    return list;
+}
+
+void ted4_camera_list_print(const ted4_camera_list *l, FILE *f)
+{
+    for (size_t i = 0; i < l->n; i++) {
+        const ted4_listed_camera *const c = &l->camera[i];
+        const ted4_view *const v = &c->view;
+        json_t *const o = json_pack("{s:i, s:i, s:f, s:f, s:f, s:f, s:o, s:o}", "width", v->width,
+                                    "height", v->height, "fx", (double)v->fx, "fy", (double)v->fy,
+                                    "cx", (double)v->cx, "cy", (double)v->cy, "R", numbers(v->R, 9),
+                                    "t", numbers(v->t, 3));
+        char time[32];
+
+        snprintf(time, sizeof time, "%" PRIu32 "/%" PRIu32, c->time.num, c->time.den);
+        if (c->has_frame)
+            json_object_set_new(o, "frame", json_integer(c->frame));
+        else if (c->time.den > 0)
+            json_object_set_new(o, "time", json_string(time));
+        fputs(i == 0 ? "[" : " ", f);
+        json_dumpf(o, f, JSON_COMPACT | JSON_REAL_PRECISION(9));
+        fputs(i + 1 < l->n ? ",\n" : "]\n", f);
+        json_decref(o);
+    }
 }

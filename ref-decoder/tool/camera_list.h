@@ -1,13 +1,15 @@
 /* camera_list.h - reads cameras.json, the list of views that ted4dec renders.
  * The file is a list of objects. Each has width, height, fx, fy, cx and cy in pixels, with pixel
  * centres at + 0.5; R (9 numbers, row by row) and t (3 numbers), so that x_cam = R x + t with the
- * axes right, down, forward; and either frame (a number) or time (a number in [0, 1], or a string
- * in the form that --time accepts).
+ * axes right, down, forward; and frame (a number), time (a number in [0, 1], or a string in the
+ * form that --time accepts), or neither: a camera of all times. A transforms file is taken as well
+ * (camera_transforms.h).
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_CAMERA_LIST_H
 #define TED4_CAMERA_LIST_H
 
 #include <stddef.h>
+#include <stdio.h>
 
 #include "render/raster.h"
 #include "times.h"
@@ -16,7 +18,7 @@ typedef struct {
     ted4_view view; /* near_z and background are not set */
     int has_frame;  /* 1: frame is valid; 0: time is valid */
     uint32_t frame;
-    ted4_time time;
+    ted4_time time; /* den 0: the camera belongs to all times */
 } ted4_listed_camera;
 
 typedef struct {
@@ -27,5 +29,10 @@ typedef struct {
 /* Returns 0, or -1 with why filled and the list empty. */
 int ted4_camera_list_load(ted4_camera_list *l, const char *path, char *why, size_t why_size);
 void ted4_camera_list_free(ted4_camera_list *l);
+/* Prints a list of at least one camera in the form that ted4_camera_list_load reads. */
+void ted4_camera_list_print(const ted4_camera_list *l, FILE *f);
+
+/* Returns 1 if R R^T is the identity, but for the rounding errors of numbers in a text file. */
+int ted4_is_rotation(const float R[9]);
 
 #endif

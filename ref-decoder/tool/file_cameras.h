@@ -6,10 +6,15 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "camera_list.h"
 #include "cams.h"
 
 /* Sets up to the up direction that a file's chunks CAMS name last, in scene coordinates; all 0 if
  * none does. file: [size], accepted by a decoder. */
 void ted4_file_up(const uint8_t *file, size_t size, float up[3]);
+
+/* Reads the cameras of a kind into *l, from the last chunk that has them. Returns 0, or -1 if out
+ * of memory; l->n is 0 if the file has none. */
+int ted4_file_cameras(const uint8_t *file, size_t size, ted4_cams_kind kind, ted4_camera_list *l);
 
 #endif

@@ -107,6 +107,8 @@ int ted4_action_open(ted4_session *s)
     const double start = seconds();
     int code = TED4_EXIT_FINE;
 
+    s->data = data;
+    s->size = size;
     if (data == NULL)
         return ted4_report_unread("ted4dec", set->input, set->json);
     ted4_scene *const scene = decode(s, data, size, &options, &what);
@@ -124,6 +126,5 @@ int ted4_action_open(ted4_session *s)
         tell_cost(s, size, 1e3 * (seconds() - start));
     else
         code = ted4_report("ted4dec", set->input, &e, set->json);
-    free(data);
     return code;
 }

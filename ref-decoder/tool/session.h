@@ -15,8 +15,10 @@ typedef struct {
     const ted4_settings *set;
     ted4_parallel parallel;
     ted4_info info;
-    ted4_recon *recon;        /* owned */
-    ted4_camera_list cameras; /* owned */
+    ted4_recon *recon; /* owned */
+    uint8_t *data;     /* owned: [size] the file */
+    size_t size;
+    ted4_camera_list cameras; /* owned: what --render draws */
     float up[3];              /* as the file says; all 0: unknown */
     json_t *report;           /* owned: what --json prints */
     int warned;

@@ -25,23 +25,28 @@ static int refuse_degree(const ted4_settings *s)
 static int check_needs(const ted4_settings *s)
 {
     const int exports = s->output != NULL, queries = exports || s->hash;
+    const int n_cameras = (s->cameras != NULL) + (s->path != NULL) + (s->orbit > 0);
     const int turns = s->auto_up || s->up[0] != 0 || s->up[1] != 0 || s->up[2] != 0;
 
-    if ((s->render != NULL) != (s->cameras != NULL))
-        return refuse("--render and --camera", "both or none");
+    if (s->render != NULL && n_cameras != 1)
+        return refuse("--render", "goes with one of --camera, --orbit and --path");
+    if (s->render == NULL && n_cameras > 0)
+        return refuse("--camera, --orbit and --path", "only with --render");
+    if (s->views > 0 && s->path == NULL)
+        return refuse("--views", "only with --path");
     if (s->has_range && !queries)
-        return refuse("--frames", "only with -o or --hash; a list of cameras says its own times");
-    if (s->has_time && !queries)
-        return refuse("--time", "only with -o or --hash; a list of cameras says its own times");
+        return refuse("--frames", "only with -o or --hash; cameras say their own times");
+    if (s->has_time && !queries && s->render == NULL)
+        return refuse("--time", "only with -o, --hash or --render");
     if (s->has_centre && !queries)
         return refuse("--camera-centre", "only with -o or --hash");
     if (s->hash && !exports && s->has_centre && !s->has_range && !s->has_time)
         return refuse("--camera-centre", "--hash needs --frames or --time as well");
     if (s->sh_degree >= 0 && !exports)
         return refuse("--sh-degree", "only with -o");
-    if (turns && !exports)
-        return refuse("--up", "only with -o");
-    if (turns && s->format == &ted4_format_raw)
+    if (turns && !exports && s->orbit == 0)
+        return refuse("--up", "only with -o or --orbit");
+    if (turns && exports && s->format == &ted4_format_raw)
         return refuse("--up", ".raw holds the records as they were decoded");
     if (s->keep_all && !exports)
         return refuse("--keep-all", "only with -o");

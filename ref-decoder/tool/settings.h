@@ -8,8 +8,10 @@
 
 typedef struct {
     const char *input;
-    const char *output, *render, *cameras; /* patterns, and a file name; NULL: not requested */
-    const ted4_format *format;             /* of output */
+    const char *output, *render; /* patterns; NULL: not requested */
+    const char *cameras, *path;  /* file names, or "file"; NULL: not requested */
+    int orbit, views;            /* numbers of pictures; 0: not given */
+    const ted4_format *format;   /* of output */
     ted4_range range;
     ted4_time time;
     int has_range, has_time;

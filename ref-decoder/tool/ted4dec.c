@@ -15,6 +15,7 @@
 #include "output.h"
 #include "settings.h"
 #include "sh.h"
+#include "views.h"
 
 enum {
     OPT_OUTPUT,
@@ -27,6 +28,9 @@ enum {
     OPT_DROP_FAINT,
     OPT_RENDER,
     OPT_CAMERA,
+    OPT_ORBIT,
+    OPT_PATH,
+    OPT_VIEWS,
     OPT_HASH,
     OPT_TEST,
     OPT_LENIENT,
@@ -43,6 +47,8 @@ enum {
     N_OPTIONS
 };
 
+enum { MAX_VIEWS = 1000000 };
+
 static const ted4_argument OPTIONS[N_OPTIONS] = {
     [OPT_OUTPUT] = { 'o', "output", "FILE",
                      "write Gaussians, one file per frame; the name ends in a format below and may "
@@ -50,7 +56,8 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
     [OPT_FRAMES] = { 0, "frames", "A:B:STEP",
                      "frames A to B - 1 by STEP; parts may be missing; A alone: that frame. "
                      "Default: all" },
-    [OPT_TIME] = { 0, "time", "T", "one time from 0 to 1 instead, as 0.25 or 7/30" },
+    [OPT_TIME] = { 0, "time", "T",
+                   "one time from 0 to 1 instead, as 0.25 or 7/30; also for --render" },
     [OPT_CENTRE] = { 0, "camera-centre", "X,Y,Z",
                      "where --hash and -o look from, in world coordinates, if spherical harmonics "
                      "do not "
@@ -67,9 +74,18 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
                        "holds a %d, so that all files of a sequence have the same Gaussians" },
     [OPT_DROP_FAINT] = { 0, "drop-faint", NULL, "leave them out. Default for a single file" },
     [OPT_RENDER] = { 0, "render", "FILE.png",
-                     "draw the cameras of --camera; the name may hold one %d" },
+                     "draw what --camera, --orbit or --path sees; the name may hold one %d" },
     [OPT_CAMERA] = { 0, "camera", "FILE.json",
-                     "list of {width, height, fx, fy, cx, cy, R[9], t[3], frame or time}" },
+                     "list of {width, height, fx, fy, cx, cy, R[9], t[3], frame or time}, a "
+                     "transforms_*.json, or the word file: the cameras of FILE.ted4" },
+    [OPT_ORBIT] = { 0, "orbit", "N",
+                    "N cameras around the scene, or to and fro where the cameras of FILE.ted4 "
+                    "stand, while it plays once" },
+    [OPT_PATH] = { 0, "path", "FILE.json",
+                   "a camera that moves along these ones, while the scene plays once; file: the "
+                   "path of FILE.ted4" },
+    [OPT_VIEWS] = { 0, "views", "N",
+                    "pictures of --path. Default: as many as the scene has frames" },
     [OPT_HASH] = { 0, "hash", NULL,
                    "print the hash of the decoded integers and, for --frames or --time, of these "
                    "queries" },
@@ -165,6 +181,16 @@ static int set_number(const char *name, const char *value, int high, int *out)
     return 0;
 }
 
+static int set_count(const char *name, const char *value, int *out)
+{
+    int64_t n;
+
+    if (ted4_arguments_number(value, 1, MAX_VIEWS, &n) != 0)
+        return ted4_arguments_bad_number("ted4dec", name, value, 1, MAX_VIEWS);
+    *out = (int)n;
+    return 0;
+}
+
 /* Does the same for a limit, which is at least 1. */
 static int set_bound(const char *name, const char *value, int64_t *out)
 {
@@ -220,6 +246,9 @@ static int set_option(ted4_settings *s, int option, const char *value)
                    ? check_pattern("render", value)
                    : bad_value("render", value, "a name that ends in .png");
     case OPT_CAMERA: s->cameras = value; return 0;
+    case OPT_ORBIT: return set_count("orbit", value, &s->orbit);
+    case OPT_PATH: s->path = value; return 0;
+    case OPT_VIEWS: return set_count("views", value, &s->views);
     case OPT_MEMORY: return set_bound("max-memory", value, &s->max_memory);
     case OPT_WORK: return set_bound("max-work", value, &s->max_work);
     case OPT_THREADS: return set_number("threads", value, TED4_MAX_THREADS, &s->threads);
@@ -265,6 +294,8 @@ static int run(ted4_session *s)
     int code = ted4_action_open(s);
 
     if (code == TED4_EXIT_FINE)
+        code = ted4_views_make(s);
+    if (code == TED4_EXIT_FINE)
         code = ted4_action_check(s);
     if (code == TED4_EXIT_FINE && set->hash)
         code = ted4_action_hash(s);
@@ -291,7 +322,6 @@ int main(int argc, char **argv)
 {
     ted4_settings set;
     ted4_session s = { .set = &set };
-    char why[256];
 
     if (ted4_contract_asked(argc, argv))
         return ted4_contract(argc, argv);
@@ -302,13 +332,8 @@ int main(int argc, char **argv)
         return code;
     ted4_threads_init(&s.parallel, set.threads);
     s.report = json_object();
-    if (set.cameras != NULL &&
-        ted4_camera_list_load(&s.cameras, set.cameras, why, sizeof why) != 0) {
-        fprintf(stderr, "ted4dec: %s: %s\n", set.cameras, why);
-        code = TED4_EXIT_TOOL;
-    } else {
-        code = run(&s);
-    }
+    code = run(&s);
+    free(s.data);
     ted4_camera_list_free(&s.cameras);
     ted4_recon_free(s.recon);
     json_decref(s.report);

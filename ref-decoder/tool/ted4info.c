@@ -14,6 +14,7 @@
 #include "cams.h"
 #include "chunks.h"
 #include "cli.h"
+#include "file_cameras.h"
 #include "findings.h"
 #include "ted4.h"
 #include "threads.h"
@@ -22,6 +23,8 @@
 enum {
     OPT_BUDGET,
     OPT_WHY,
+    OPT_CAMERAS,
+    OPT_PATH,
     OPT_VALIDATE,
     OPT_MEMORY,
     OPT_WORK,
@@ -38,6 +41,8 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
     [OPT_BUDGET] = { 0, "budget", NULL, "attribute every byte of the file to a syntax element" },
     [OPT_WHY] = { 0, "why", NULL,
                   "what the encoder says of its decisions, if it was asked to (ted4enc --why)" },
+    [OPT_CAMERAS] = { 0, "cameras", NULL, "the cameras of the file, as JSON for ted4dec --camera" },
+    [OPT_PATH] = { 0, "path", NULL, "the path of the file, as JSON for ted4dec --path" },
     [OPT_VALIDATE] = { 0, "validate", NULL,
                        "for authors of encoders: every error, and what is legal but doubtful, with "
                        "byte offset and rule" },
@@ -106,6 +111,11 @@ static int parse(settings *s, int argc, char **argv)
         return usage_error("exactly one file");
     if (s->on[OPT_VALIDATE] && (s->on[OPT_BUDGET] || s->on[OPT_WHY] || s->on[OPT_VERBOSE]))
         return usage_error("--validate goes without --budget, --why and --verbose");
+    if (s->on[OPT_CAMERAS] + s->on[OPT_PATH] > 0 &&
+        s->on[OPT_CAMERAS] + s->on[OPT_PATH] + s->on[OPT_VALIDATE] + s->on[OPT_BUDGET] +
+                s->on[OPT_WHY] + s->on[OPT_VERBOSE] + s->on[OPT_JSON] + s->on[OPT_QUIET] >
+            1)
+        return usage_error("--cameras and --path print nothing else");
     if (s->on[OPT_QUIET] && !s->on[OPT_JSON] &&
         (s->on[OPT_BUDGET] || s->on[OPT_WHY] || s->on[OPT_VERBOSE]))
         return usage_error("--quiet goes without --budget, --why and --verbose");
@@ -334,9 +344,30 @@ static void print_json(const settings *s, const ted4_info *info, const ted4_budg
     json_decref(o);
 }
 
+static int show_cameras(const settings *s, const uint8_t *data, size_t size)
+{
+    const ted4_cams_kind kind = s->on[OPT_PATH] ? TED4_CAMS_PATH : TED4_CAMS_TAKEN;
+    ted4_camera_list cameras;
+    const int bad = ted4_file_cameras(data, size, kind, &cameras) != 0;
+
+    if (bad || cameras.n == 0)
+        fprintf(stderr, "ted4info: %s: %s\n", s->input,
+                bad                      ? "out of memory"
+                : kind == TED4_CAMS_PATH ? "the file has no path of cameras"
+                                         : "the file has no cameras");
+    else
+        ted4_camera_list_print(&cameras, stdout);
+    const int code = bad || cameras.n == 0 ? TED4_EXIT_TOOL : TED4_EXIT_FINE;
+
+    ted4_camera_list_free(&cameras);
+    return code;
+}
+
 static int show(const settings *s, const ted4_info *info, const ted4_budget *b, const uint8_t *data,
                 size_t size)
 {
+    if (s->on[OPT_CAMERAS] || s->on[OPT_PATH])
+        return show_cameras(s, data, size);
     if (s->on[OPT_JSON]) {
         print_json(s, info, b, data, size);
     } else if (!s->on[OPT_QUIET]) {

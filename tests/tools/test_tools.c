@@ -266,8 +266,6 @@ static void test_render(void **state)
     assert_true(colours > 1000); /* something is to be seen */
 }
 
-/* ---- ted4eval ---- */
-
 static void write_scene_file(const char *name)
 {
     json_t *const frames = json_array();
@@ -291,6 +289,53 @@ static void write_scene_file(const char *name)
                    "cy", 32.0, "w", WIDTH, "h", HEIGHT, "frames", frames),
          name);
 }
+
+/* The same cameras as a list, as a transforms file, with sizes from pictures, and as the file
+ * itself says: the same pictures. */
+static void test_cameras(void **state)
+{
+    (void)state;
+    need_programs();
+    write_scene_file("transforms.json");
+    assert_int_equal(run("ted4dec v1.ted4 --render t_%%d.png --camera transforms.json && "
+                         "for i in 0 1 2; do cmp t_$i.png view_$i.png || exit 9; "
+                         "cp t_$i.png p$i.png; done"),
+                     0);
+    assert_int_equal(
+        run("sed '/\"[wh]\": /d; /\"c[xy]\": /d; /\"fl_y\"/d' transforms.json >bare.json"
+            " && ted4dec v1.ted4 --render t_%%d.png -f --camera ./bare.json && "
+            "cmp t_2.png view_2.png"),
+        0);
+    assert_int_equal(run("ted4edit v1.ted4 -o c.ted4 --cameras cameras.json --path cameras.json && "
+                         "ted4dec c.ted4 --render t_%%d.png -f --camera file && "
+                         "cmp t_1.png view_1.png && ted4info c.ted4 --cameras >list.json && "
+                         "ted4dec v1.ted4 --render t_%%d.png -f --camera list.json && "
+                         "cmp t_1.png view_1.png && ted4info c.ted4 --path | cmp - list.json"),
+                     0);
+    /* A path through these cameras, of as many pictures, at their times; and at one time. */
+    assert_int_equal(run("ted4dec c.ted4 --render p_%%d.png --path file --views 3 && "
+                         "cmp p_0.png view_0.png && cmp p_2.png view_2.png && "
+                         "ted4dec c.ted4 --render q_%%d.png --path list.json --views 3 --time 0 && "
+                         "cmp q_0.png view_0.png && ! cmp -s q_2.png view_2.png"),
+                     0);
+    assert_int_equal(run("ted4dec v1.ted4 --render f_%%02d.png --path list.json"), 0);
+    for (uint32_t i = 0; i <= file[1].info.frames; i++) {
+        char name[32];
+
+        snprintf(name, sizeof name, "f_%02u.png", (unsigned)i);
+        assert_int_equal(exists(name), i < file[1].info.frames);
+    }
+    /* Around the scene: with the size of the file's cameras, or without any camera. */
+    assert_int_equal(run("ted4dec c.ted4 --render o_%%d.png --orbit 2 && "
+                         "ted4dec v1.ted4 --render u_%%d.png --orbit 2 --up z"),
+                     0);
+    assert_true(exists("o_1.png") && exists("u_1.png"));
+    assert_int_equal(run("ted4dec v1.ted4 --render n.png --camera file"), 3);
+    assert_int_equal(run("ted4dec v1.ted4 --render n.png --path file"), 3);
+    assert_int_equal(run("ted4info v1.ted4 --cameras"), 3);
+}
+
+/* ---- ted4eval ---- */
 
 static double result(const char *key)
 {
@@ -366,7 +411,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_contract_bound), cmocka_unit_test(test_hash),
         cmocka_unit_test(test_frames),         cmocka_unit_test(test_fitted_colours),
-        cmocka_unit_test(test_render),         cmocka_unit_test(test_eval),
+        cmocka_unit_test(test_render),         cmocka_unit_test(test_cameras),
+        cmocka_unit_test(test_eval),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }
