@@ -6,11 +6,12 @@
 
 static const struct {
     const char *id, *section, *text;
-} table[TED4_N_STATUS] = {
+} table[TED4_N_STATUS + 1] = {
     { "ok", "14", "valid" },
 #define TED4_STATUS(name, id, section, text) { id, section, text },
 #include "status.def"
 #undef TED4_STATUS
+    { "unknown", "14", "not a status of this version" },
 };
 
 void ted4_fail(ted4_error *e, ted4_status code, size_t offset)
@@ -21,24 +22,30 @@ void ted4_fail(ted4_error *e, ted4_status code, size_t offset)
     }
 }
 
+/* Numbers of later versions, or of no status, are described as such. */
+static unsigned known(ted4_status s)
+{
+    return (unsigned)s < TED4_N_STATUS ? (unsigned)s : TED4_N_STATUS;
+}
+
 const char *ted4_status_id(ted4_status s)
 {
-    return table[s].id;
+    return table[known(s)].id;
 }
 
 const char *ted4_status_section(ted4_status s)
 {
-    return table[s].section;
+    return table[known(s)].section;
 }
 
 const char *ted4_status_text(ted4_status s)
 {
-    return table[s].text;
+    return table[known(s)].text;
 }
 
 ted4_verdict ted4_status_verdict(ted4_status s)
 {
-    const char *id = table[s].id;
+    const char *id = table[known(s)].id;
 
     if (s == TED4_OK)
         return TED4_VALID;
@@ -55,5 +62,5 @@ const char *ted4_verdict_name(ted4_verdict v)
 {
     static const char *const name[] = { "valid", "invalid", "limit", "unsupported", "io" };
 
-    return name[v];
+    return (unsigned)v < sizeof name / sizeof *name ? name[v] : "unknown";
 }

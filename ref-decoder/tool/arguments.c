@@ -101,6 +101,26 @@ int ted4_arguments_next(const ted4_command *c, int argc, char **argv, const char
     return TED4_ARGUMENTS_BAD;
 }
 
+void ted4_arguments_wrap(FILE *f, const char *text, int indent)
+{
+    int column = indent;
+
+    for (text += strspn(text, " \n"); *text != '\0'; text += strspn(text, " \n")) {
+        const int n = (int)strcspn(text, " \n");
+
+        if (column > indent && column + 1 + n > TED4_HELP_COLUMNS) {
+            fprintf(f, "\n%*s", indent, "");
+            column = indent;
+        }
+        if (column > indent)
+            fputc(' ', f);
+        column += n + (column > indent);
+        fprintf(f, "%.*s", n, text);
+        text += n;
+    }
+    fputc('\n', f);
+}
+
 void ted4_arguments_help(const ted4_command *c, FILE *f)
 {
     int widest = 0;
@@ -111,7 +131,9 @@ void ted4_arguments_help(const ted4_command *c, FILE *f)
 
         widest = width > widest ? width : widest;
     }
-    fprintf(f, "Usage: %s %s\n%s\n\n", c->program, c->usage, c->text);
+    fprintf(f, "Usage: %s %s\n", c->program, c->usage);
+    ted4_arguments_wrap(f, c->text, 0);
+    fputc('\n', f);
     for (int i = 0; i < c->n; i++) {
         const ted4_argument *const a = &c->table[i];
         const char *const gap = a->value != NULL ? " " : "";
@@ -122,7 +144,8 @@ void ted4_arguments_help(const ted4_command *c, FILE *f)
             fprintf(f, "  -%c, ", a->letter);
         else
             fputs("      ", f);
-        fprintf(f, "--%s%s%s%*s  %s\n", a->name, gap, value, widest - width, "", a->text);
+        fprintf(f, "--%s%s%s%*s  ", a->name, gap, value, widest - width, "");
+        ted4_arguments_wrap(f, a->text, widest + 10);
     }
     fprintf(f, "\n%s", c->end);
     if (c->more != NULL)

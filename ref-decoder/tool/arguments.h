@@ -14,7 +14,7 @@ typedef struct {
     int letter;        /* 'o', or 0: long name only */
     const char *name;  /* "output" */
     const char *value; /* name of its value in the help text; NULL: the option takes no value */
-    const char *text;  /* one line of help */
+    const char *text;  /* help, in one line of any length */
 } ted4_argument;
 
 typedef struct {
@@ -46,6 +46,12 @@ enum { TED4_ARGUMENTS_END = -1, TED4_ARGUMENTS_BAD = -2, TED4_ARGUMENTS_DONE = -
  * TED4_KERNEL names kernels that this machine cannot run. */
 int ted4_arguments_next(const ted4_command *c, int argc, char **argv, const char **value);
 void ted4_arguments_help(const ted4_command *c, FILE *f);
+
+enum { TED4_HELP_COLUMNS = 80 };
+/* Prints the words of text, which line breaks and spaces separate, in lines of at most
+ * TED4_HELP_COLUMNS. Lines after the first one are indented; the caller has printed so many columns
+ * of the first one. */
+void ted4_arguments_wrap(FILE *f, const char *text, int indent);
 
 /* Reads all of text as a decimal integer within [low, high]. Returns 0, or -1. */
 int ted4_arguments_number(const char *text, int64_t low, int64_t high, int64_t *out);

@@ -27,12 +27,6 @@ static double seconds(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* Returns 1 if the file is only to be checked. */
-static int only_checks(const ted4_settings *s)
-{
-    return s->test || (s->output == NULL && s->render == NULL && !s->hash && !s->trace);
-}
-
 /* Reports the contents of the file, and the time and memory used to decode it to attributes.
  * ru_maxrss is the peak of this process in KiB (Linux), including its copy of the file. */
 static void tell_cost(const ted4_session *s, size_t size, double ms)
@@ -41,13 +35,13 @@ static void tell_cost(const ted4_session *s, size_t size, double ms)
     struct rusage usage;
     const double mib = getrusage(RUSAGE_SELF, &usage) == 0 ? (double)usage.ru_maxrss / 1024 : 0.0;
 
-    if (set->verbose || (only_checks(set) && !set->quiet))
+    if (set->verbose || (ted4_settings_only_check(set) && !set->quiet))
         fprintf(stderr,
                 "ted4dec: %s: %s, %zu bytes, %" PRIu32 " anchors, %zu Gaussians, %" PRIu32
                 " frames; decoded to attributes in %.1f ms, peak memory %.1f MiB\n",
                 set->input, s->warned ? "incomplete" : "valid", size, s->info.n_anchors,
                 s->info.n_gaussians, s->info.frames, ms, mib);
-    if (only_checks(set)) {
+    if (ted4_settings_only_check(set)) {
         json_object_set_new(s->report, "decode_ms", json_real(ms));
         json_object_set_new(s->report, "peak_mib", json_real(mib));
     }
@@ -94,6 +88,20 @@ static ted4_scene *decode(ted4_session *s, const uint8_t *data, size_t size, con
     return scene;
 }
 
+/* Returns the time of --time. */
+static ted4_time requested_time(const ted4_session *s)
+{
+    const ted4_info *const info = &s->info;
+    const ted4_seconds t = s->set->seconds;
+    const double end = (double)(info->frames - 1) * info->rate_den / info->rate_num;
+
+    if (t.den == 0)
+        return s->set->time;
+    if ((double)t.num / t.den > end && !s->set->quiet)
+        fprintf(stderr, "ted4dec: note: the last frame is at %.7g s\n", end);
+    return ted4_time_of_seconds(t, info->frames, info->rate_num, info->rate_den);
+}
+
 int ted4_action_open(ted4_session *s)
 {
     const ted4_settings *const set = s->set;
@@ -117,6 +125,7 @@ int ted4_action_open(ted4_session *s)
     if (scene != NULL) { /* the scene is freed once there is a recon */
         ted4_scene_info(scene, &s->info);
         ted4_file_up(data, size, s->up);
+        s->time = requested_time(s);
         if (e.code != TED4_OK)
             tell_salvage(s, &what);
         e.code = ted4_recon_new(&s->recon, scene, &options);

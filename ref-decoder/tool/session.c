@@ -21,7 +21,7 @@ size_t ted4_session_times(const ted4_session *s)
 ted4_time ted4_session_time(const ted4_session *s, size_t i, uint32_t *number)
 {
     *number = s->set->has_time ? 0 : s->set->range.first + (uint32_t)i * s->set->range.step;
-    return s->set->has_time ? s->set->time : ted4_time_of_frame(*number, s->info.frames);
+    return s->set->has_time ? s->time : ted4_time_of_frame(*number, s->info.frames);
 }
 
 int ted4_session_failed(ted4_status status, const ted4_session *s)

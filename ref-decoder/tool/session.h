@@ -19,6 +19,7 @@ typedef struct {
     uint8_t *data;     /* owned: [size] the file */
     size_t size;
     ted4_camera_list cameras; /* owned: what --render draws */
+    ted4_time time;           /* of --time */
     float up[3];              /* as the file says; all 0: unknown */
     json_t *report;           /* owned: what --json prints */
     int warned;

@@ -71,6 +71,11 @@ static int check_conflicts(const ted4_settings *s)
     return 0;
 }
 
+int ted4_settings_only_check(const ted4_settings *s)
+{
+    return s->test || (s->output == NULL && s->render == NULL && !s->hash && !s->trace);
+}
+
 int ted4_settings_check(const ted4_settings *s)
 {
     const int code = check_needs(s);

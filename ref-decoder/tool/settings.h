@@ -15,6 +15,7 @@ typedef struct {
     ted4_range range;
     ted4_time time;
     int has_range, has_time;
+    ted4_seconds seconds; /* the time, if den > 0 */
     float centre[3];
     int has_centre;
     float up[3];   /* direction of the scene that exports turn up; all 0: do not turn */
@@ -24,6 +25,9 @@ typedef struct {
     int64_t max_memory, max_work; /* limits for decoding and for a query; 0: not given */
     int keep_all, drop_faint, hash, test, lenient, trace, force, json, quiet, verbose;
 } ted4_settings;
+
+/* Returns 1 if nothing is to be printed or written: the files are only to be checked. */
+int ted4_settings_only_check(const ted4_settings *s);
 
 /* Checks that no option would be without effect beside the others, before the file is read.
  * Returns 0, or an exit code (cli.h) after one line on stderr. */

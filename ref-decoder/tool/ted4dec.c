@@ -57,7 +57,8 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
                      "frames A to B - 1 by STEP; parts may be missing; A alone: that frame. "
                      "Default: all" },
     [OPT_TIME] = { 0, "time", "T",
-                   "one time from 0 to 1 instead, as 0.25 or 7/30; also for --render" },
+                   "one time instead: in seconds, as 1.5s, or from 0 to 1, as 0.25 or 7/30; also "
+                   "for --render" },
     [OPT_CENTRE] = { 0, "camera-centre", "X,Y,Z",
                      "where --hash and -o look from, in world coordinates, if spherical harmonics "
                      "do not "
@@ -91,7 +92,7 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
                    "queries" },
     [OPT_TEST] = { 0, "test", NULL,
                    "only decode, checking everything, and tell time and peak memory (also what "
-                   "happens when nothing else is asked for)" },
+                   "happens when nothing else is asked for); of any number of files" },
     [OPT_LENIENT] = { 0, "lenient", NULL,
                       "of a damaged or truncated file take the first whole tiles, and say so" },
     [OPT_TRACE] = { 0, "trace", NULL,
@@ -114,18 +115,23 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
 static void print_formats(FILE *f)
 {
     fputs("\nFormats of -o:\n", f);
-    for (size_t i = 0; ted4_formats[i] != NULL; i++)
-        fprintf(f, "  %-8s %s\n", ted4_formats[i]->suffix, ted4_formats[i]->text);
+    for (size_t i = 0; ted4_formats[i] != NULL; i++) {
+        fprintf(f, "  %-8s ", ted4_formats[i]->suffix);
+        ted4_arguments_wrap(f, ted4_formats[i]->text, 11);
+    }
 }
 
 static const ted4_command COMMAND = {
     "ted4dec",
-    "FILE.ted4 [options]        (- reads standard input)",
+    "FILE.ted4... [options]     (- reads standard input)",
     "Decodes a TED4 file: Gaussians of any time as files for viewers, pictures, hashes.",
     OPTIONS,
     N_OPTIONS,
-    "Exit codes: 0 fine, 1 file refused, 2 fine with warnings, 3 usage, input, output or "
-    "resources.\n",
+    "Exit codes: 0 fine, 1 file refused, 2 fine with warnings, 3 usage, input,\n"
+    "output or resources.\n\n"
+    "Examples:\n"
+    "  ted4dec a.ted4 -o frame_%05d.ply --up auto\n"
+    "  ted4dec a.ted4 --render view_%04d.png --orbit 120\n",
     print_formats,
 };
 
@@ -153,6 +159,15 @@ static int check_pattern(const char *name, const char *value)
     return ted4_pattern_count(value) >= 0
                ? 0
                : bad_value(name, value, "at most one %d, %5d or %05d, and no other %");
+}
+
+/* Several files can be checked; an output is not one of them. */
+static int may_be_many(const ted4_settings *s, int n, char **operand)
+{
+    for (int i = 0; i < n; i++)
+        if (ted4_format_find(operand[i]) != NULL)
+            return 0;
+    return ted4_settings_only_check(s);
 }
 
 /* The operands are not one file. What looks like an output is one whose -o is missing. */
@@ -214,6 +229,17 @@ static int set_up(ted4_settings *s, const char *value)
     return 0;
 }
 
+static int set_time(ted4_settings *s, const char *value)
+{
+    s->has_time = 1;
+    s->seconds.den = 0;
+    if (ted4_time_parse(value, &s->time) == 0 || ted4_seconds_parse(value, &s->seconds) == 0)
+        return 0;
+    return bad_value(
+        "time", value,
+        "seconds, as 1.5s, or 0 to 1, as 0.25 or 7/30; at most 7 digits after a point");
+}
+
 static int set_option(ted4_settings *s, int option, const char *value)
 {
     switch (option) {
@@ -227,12 +253,7 @@ static int set_option(ted4_settings *s, int option, const char *value)
                    ? 0
                    : bad_value("frames", value,
                                "one frame, or A:B:STEP with A < B, as 0:10 or ::5");
-    case OPT_TIME:
-        s->has_time = 1;
-        return ted4_time_parse(value, &s->time) == 0
-                   ? 0
-                   : bad_value("time", value,
-                               "0 to 1, as 0.25 (at most 7 digits after the point) or 7/30");
+    case OPT_TIME: return set_time(s, value);
     case OPT_CENTRE:
         s->has_centre = 1;
         return ted4_arguments_floats(value, 3, s->centre) == 0
@@ -280,9 +301,8 @@ static int parse(ted4_settings *s, int argc, char **argv)
         if (code != 0)
             return code;
     }
-    if (optind + 1 != argc)
+    if (optind == argc || (optind + 1 < argc && !may_be_many(s, argc - optind, argv + optind)))
         return bad_operands(argc - optind, argv + optind);
-    s->input = argv[optind];
     const int code = ted4_settings_check(s);
 
     return code != 0 ? code : -1;
@@ -318,29 +338,43 @@ static int run(ted4_session *s)
     return code;
 }
 
-int main(int argc, char **argv)
+/* Does for one file what the settings say. Returns the exit code. */
+static int work(const ted4_settings *set)
 {
-    ted4_settings set;
-    ted4_session s = { .set = &set };
+    ted4_session s = { .set = set, .report = json_object() };
+    int code;
 
-    if (ted4_contract_asked(argc, argv))
-        return ted4_contract(argc, argv);
-
-    int code = parse(&set, argc, argv);
-
-    if (code >= 0)
-        return code;
-    ted4_threads_init(&s.parallel, set.threads);
-    s.report = json_object();
+    ted4_threads_init(&s.parallel, set->threads);
     code = run(&s);
     free(s.data);
     ted4_camera_list_free(&s.cameras);
     ted4_recon_free(s.recon);
     json_decref(s.report);
     ted4_threads_finish(&s.parallel);
+    return code == TED4_EXIT_FINE && s.warned ? TED4_EXIT_WARNED : code;
+}
+
+int main(int argc, char **argv)
+{
+    ted4_settings set;
+    int worst = TED4_EXIT_FINE;
+
+    if (ted4_contract_asked(argc, argv))
+        return ted4_contract(argc, argv);
+
+    const int parsed = parse(&set, argc, argv);
+
+    if (parsed >= 0)
+        return parsed;
+    for (int i = optind; i < argc; i++) {
+        set.input = argv[i];
+        const int code = work(&set);
+
+        worst = code > worst ? code : worst;
+    }
     if (fflush(stdout) != 0 || ferror(stdout)) {
         fprintf(stderr, "ted4dec: standard output: %s\n", strerror(errno));
         return TED4_EXIT_TOOL;
     }
-    return code == TED4_EXIT_FINE && s.warned ? TED4_EXIT_WARNED : code;
+    return worst;
 }

@@ -52,7 +52,7 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
                    "number" },
     [OPT_THREADS] = { 'j', "threads", "N",
                       "accepted; elements are listed in order, by one thread" },
-    [OPT_JSON] = { 0, "json", NULL, "everything as one JSON object" },
+    [OPT_JSON] = { 0, "json", NULL, "everything as one JSON object for each file" },
     [OPT_QUIET] = { 'q', "quiet", NULL, "errors only: is the file valid?" },
     [OPT_VERBOSE] = { 'v', "verbose", NULL, "also every element of the header" },
     [OPT_HELP] = TED4_ARGUMENT_HELP,
@@ -61,12 +61,15 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
 
 static const ted4_command COMMAND = {
     "ted4info",
-    "FILE.ted4 [options]        (- reads standard input)",
+    "FILE.ted4... [options]     (- reads standard input)",
     "Says what a TED4 file holds.",
     OPTIONS,
     N_OPTIONS,
-    "Exit codes: 0 fine, 1 file refused, 2 fine with warnings (--validate), 3 usage, input, output "
-    "or resources.\n",
+    "Exit codes: 0 fine, 1 file refused, 2 fine with warnings (--validate), 3 usage,\n"
+    "input, output or resources.\n\n"
+    "Examples:\n"
+    "  ted4info a.ted4 --budget\n"
+    "  ted4info a.ted4 --cameras >cameras.json\n",
     NULL,
 };
 
@@ -107,8 +110,10 @@ static int parse(settings *s, int argc, char **argv)
             return bad_number("max-work", value, 1, INT64_MAX);
         s->on[i] = 1;
     }
-    if (optind + 1 != argc)
-        return usage_error("exactly one file");
+    if (optind == argc)
+        return usage_error("expected a file");
+    if (optind + 1 < argc && s->on[OPT_CAMERAS] + s->on[OPT_PATH] > 0)
+        return usage_error("--cameras and --path are of one file");
     if (s->on[OPT_VALIDATE] && (s->on[OPT_BUDGET] || s->on[OPT_WHY] || s->on[OPT_VERBOSE]))
         return usage_error("--validate goes without --budget, --why and --verbose");
     if (s->on[OPT_CAMERAS] + s->on[OPT_PATH] > 0 &&
@@ -119,7 +124,6 @@ static int parse(settings *s, int argc, char **argv)
     if (s->on[OPT_QUIET] && !s->on[OPT_JSON] &&
         (s->on[OPT_BUDGET] || s->on[OPT_WHY] || s->on[OPT_VERBOSE]))
         return usage_error("--quiet goes without --budget, --why and --verbose");
-    s->input = argv[optind];
     return -1;
 }
 
@@ -131,6 +135,12 @@ static int is_float(const char *element)
 static int64_t integer_value(const ted4_header_value *v)
 {
     return strcmp(v->name, "exponent") == 0 ? (int8_t)v->value : v->value;
+}
+
+/* The time of the last frame. */
+static double last_second(const ted4_info *info)
+{
+    return (double)(info->frames - 1) * info->rate_den / info->rate_num;
 }
 
 /* A single frame has no rate. Rates in thousandths are printed as decimal numbers, such as 6 or
@@ -145,6 +155,8 @@ static void print_frames(const ted4_info *info)
     else if (info->frames > 1)
         printf(" at %" PRIu32 "/%" PRIu32 " per second", info->rate_num, info->rate_den);
     putchar('\n');
+    if (info->frames > 1)
+        printf("seconds     0 to %.7g\n", last_second(info));
 }
 
 static void print_summary(const settings *s, const ted4_info *info, size_t size)
@@ -333,6 +345,8 @@ static void print_json(const settings *s, const ted4_info *info, const ted4_budg
                   "level", info->level, "hash", hash, "anchors", (json_int_t)info->n_anchors,
                   "moving", (json_int_t)info->n_dynamic, "gaussians", (json_int_t)info->n_gaussians,
                   "header", header_json(b));
+    json_object_set_new(o, "seconds",
+                        info->frames > 1 ? json_real(last_second(info)) : json_integer(0));
     if (s->on[OPT_BUDGET])
         json_object_set_new(o, "budget", budget_json(b));
     if (s->on[OPT_WHY])
@@ -383,8 +397,12 @@ static int show(const settings *s, const ted4_info *info, const ted4_budget *b, 
     return TED4_EXIT_FINE;
 }
 
-static int run(const settings *s, ted4_budget *budget)
+/* Does for one file what the settings say. Returns the exit code. */
+static int run(const settings *s)
 {
+    static ted4_budget counts;
+    ted4_budget *const budget = memset(&counts, 0, sizeof counts);
+
     const ted4_options options = { .max_bytes = (uint64_t)s->max_memory,
                                    .max_work = (uint64_t)s->max_work,
                                    .trace = ted4_budget_trace,
@@ -412,18 +430,28 @@ static int run(const settings *s, ted4_budget *budget)
     }
     ted4_scene_free(scene);
     free(data);
-    if (fflush(stdout) != 0 || ferror(stdout)) {
-        fprintf(stderr, "ted4info: standard output: %s\n", strerror(errno));
-        return TED4_EXIT_TOOL;
-    }
     return code;
 }
 
 int main(int argc, char **argv)
 {
-    static ted4_budget budget;
     settings s;
-    const int code = parse(&s, argc, argv);
+    const int parsed = parse(&s, argc, argv);
+    int worst = TED4_EXIT_FINE;
 
-    return code >= 0 ? code : run(&s, &budget);
+    if (parsed >= 0)
+        return parsed;
+    for (int i = optind; i < argc; i++) {
+        s.input = argv[i];
+        if (i > optind && !s.on[OPT_JSON] && !s.on[OPT_QUIET])
+            putchar('\n');
+        const int code = run(&s);
+
+        worst = code > worst ? code : worst;
+    }
+    if (fflush(stdout) != 0 || ferror(stdout)) {
+        fprintf(stderr, "ted4info: standard output: %s\n", strerror(errno));
+        return TED4_EXIT_TOOL;
+    }
+    return worst;
 }

@@ -82,6 +82,108 @@ int ted4_time_parse(const char *text, ted4_time *t)
                                                                                                : -1;
 }
 
+int ted4_seconds_parse(const char *text, ted4_seconds *s)
+{
+    enum { MAX_SECONDS = 1000000 };
+    int n = 0;
+    uint32_t whole;
+    const char *p = read_digits(text, &whole);
+
+    if (p == NULL || whole >= MAX_SECONDS)
+        return -1;
+    *s = (ted4_seconds) { whole, 1 };
+    if (*p == '.') {
+        for (p++; *p >= '0' && *p <= '9' && n < MAX_DECIMALS; p++, n++) {
+            s->num = s->num * 10 + (uint64_t)(*p - '0');
+            s->den *= 10;
+        }
+        if (n == 0)
+            return -1;
+    }
+    return p[0] == 's' && p[1] == '\0' ? 0 : -1;
+}
+
+static uint64_t divisor64(uint64_t a, uint64_t b)
+{
+    while (b != 0) {
+        const uint64_t rest = a % b;
+
+        a = b;
+        b = rest;
+    }
+    return a;
+}
+
+/* Returns rne(num most / den) for num < den < 2^62 and most < 2^24, by long multiplication and
+ * division. */
+static uint32_t scaled(uint64_t num, uint64_t den, uint32_t most)
+{
+    uint64_t quotient = 0, rest = 0;
+
+    for (int bit = 23; bit >= 0; bit--) {
+        quotient *= 2;
+        rest *= 2;
+        if (rest >= den) {
+            rest -= den;
+            quotient++;
+        }
+        if ((most >> bit & 1) != 0) {
+            rest += num;
+            if (rest >= den) {
+                rest -= den;
+                quotient++;
+            }
+        }
+    }
+    return (uint32_t)(quotient + (2 * rest > den || (2 * rest == den && quotient % 2 == 1)));
+}
+
+/* Multiplies two numbers, both divided by powers of 2 where the product needs more than 62 bits.
+ * *shift grows by the number of bits lost. */
+static uint64_t product(uint64_t a, uint64_t b, int *shift)
+{
+    const uint64_t most = (uint64_t)1 << 62;
+
+    while (b != 0 && a > most / b) {
+        if (a > b)
+            a /= 2;
+        else
+            b /= 2;
+        ++*shift;
+    }
+    return a * b;
+}
+
+ted4_time ted4_time_of_seconds(ted4_seconds s, uint32_t n_frames, uint32_t rate_num,
+                               uint32_t rate_den)
+{
+    const uint32_t last = n_frames - 1, most = DENOMINATORS - 1;
+    uint64_t a = s.num, b = s.den, c = rate_num, d = rate_den, common;
+    int up = 0, down = 0;
+
+    if (last == 0 || s.num == 0)
+        return (ted4_time) { 0, 1 };
+    common = divisor64(a, d);
+    a /= common;
+    d /= common;
+    common = divisor64(c, b);
+    c /= common;
+    b /= common;
+    uint64_t num = product(a, c, &up), den = product(product(b, d, &down), last, &down);
+
+    for (; up > down; down++)
+        den /= 2;
+    for (; down > up; up++)
+        num /= 2;
+    if (num >= den)
+        return (ted4_time) { 1, 1 };
+    common = divisor64(den, num);
+    num /= common;
+    den /= common;
+    return den < DENOMINATORS ? (ted4_time) { (uint32_t)num, (uint32_t)den }
+                              : (ted4_time) { scaled(num, den, most), most };
+}
+
 /* Returns the greatest common divisor; a >= 1. */
 static uint32_t divisor(uint32_t a, uint32_t b)
 {

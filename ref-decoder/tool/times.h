@@ -24,6 +24,23 @@ int ted4_range_parse(const char *text, ted4_range *r);
  * 2^24, without rounding. The time must be within [0, 1]. Returns 0, or -1. */
 int ted4_time_parse(const char *text, ted4_time *t);
 
+/* The time num / den seconds after the first frame. */
+typedef struct {
+    uint64_t num;
+    uint32_t den; /* a power of 10, at most 10^7 */
+} ted4_seconds;
+
+/* Parses a decimal number of seconds below 10^6 with up to 7 digits after the point, followed by
+ * "s": "1.5s". Returns 0, or -1. */
+int ted4_seconds_parse(const char *text, ted4_seconds *s);
+
+/* R-MED-001: returns the time of a scene of n_frames at rate_num / rate_den frames per second, all
+ * at least 1, that lies s after its first frame; the first or last frame's where there is none.
+ * Exact, as a fraction, unless its terms need more than 62 bits: then they are rounded to so many.
+ */
+ted4_time ted4_time_of_seconds(ted4_seconds s, uint32_t n_frames, uint32_t rate_num,
+                               uint32_t rate_den);
+
 /* R-HDR-005: returns the time of a frame. frame < n_frames, n_frames >= 1. */
 ted4_time ted4_time_of_frame(uint32_t frame, uint32_t n_frames);
 

@@ -222,7 +222,7 @@ int ted4_views_make(ted4_session *s)
 
         if (set->has_time) {
             c->has_frame = 0;
-            c->time = set->time;
+            c->time = s->time;
         } else if (!c->has_frame && c->time.den == 0) {
             c->time = (ted4_time) { 0, 1 };
         }

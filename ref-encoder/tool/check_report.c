@@ -2,8 +2,11 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "check_report.h"
 
+#include <inttypes.h>
 #include <jansson.h>
 #include <stdio.h>
+
+#include "train/model/header_from_options.h"
 
 static json_t *text(const char *t)
 {
@@ -24,6 +27,16 @@ static json_t *sizes(const ted4_dataset *d)
         high = c->width > high->width ? c : high;
     }
     return json_pack("[[i,i],[i,i]]", low->width, low->height, high->width, high->height);
+}
+
+/* The frame rate that the file will state, as "30/1". */
+static void file_rate(const ted4_dataset *d, const ted4_train_options *options, char *text,
+                      size_t size)
+{
+    ted4_header h;
+
+    ted4_header_make(&h, options, d);
+    snprintf(text, size, "%" PRIu32 "/%" PRIu32, h.rate_num, h.rate_den);
 }
 
 static void describe(const ted4_dataset *d, json_t *o)
@@ -49,11 +62,18 @@ static void describe(const ted4_dataset *d, json_t *o)
     json_object_set_new(o, "warnings", warnings);
 }
 
-void ted4_check_report(const ted4_dataset *d, const char *error, int json)
+void ted4_check_report(const ted4_dataset *d, const ted4_train_options *options, const char *error,
+                       int json)
 {
+    char rate[32];
+
     if (!json) {
         if (d != NULL)
             ted4_dataset_print(d, stdout);
+        if (d != NULL && d->n_frames > 1 && d->rate == 0) {
+            file_rate(d, options, rate, sizeof rate);
+            printf("            (the file will say %s frames/s)\n", rate);
+        }
         return;
     }
     json_t *const o = json_object();
@@ -61,6 +81,10 @@ void ted4_check_report(const ted4_dataset *d, const char *error, int json)
     json_object_set_new(o, "error", error != NULL ? text(error) : json_null());
     if (d != NULL)
         describe(d, o);
+    if (d != NULL && d->n_frames > 1) {
+        file_rate(d, options, rate, sizeof rate);
+        json_object_set_new(o, "file_rate", json_string(rate));
+    }
     json_dumpf(o, stdout, JSON_COMPACT | JSON_REAL_PRECISION(9));
     putchar('\n');
     json_decref(o);

@@ -4,6 +4,7 @@
 
 #include <getopt.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "ted4.h"
@@ -113,6 +114,32 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
     [OPT_VERSION] = TED4_ARGUMENT_VERSION,
 };
 
+/* Prints the table of training options with meanings that fit the line or stand below their
+ * values. */
+static void print_training_options(FILE *f)
+{
+    enum { MEANING = 66, BELOW = 6 }; /* columns */
+    char *table = NULL;
+    size_t size = 0;
+    FILE *const all = open_memstream(&table, &size);
+
+    if (all == NULL)
+        return;
+    ted4_options_help(all);
+    if (fclose(all) == 0) {
+        for (char *line = table, *end; (end = strchr(line, '\n')) != NULL; line = end + 1) {
+            *end = '\0';
+            if (end - line <= TED4_HELP_COLUMNS) {
+                fprintf(f, "%s\n", line);
+                continue;
+            }
+            fprintf(f, "%.*s\n%*s", MEANING - 2, line, BELOW, "");
+            ted4_arguments_wrap(f, line + MEANING, BELOW);
+        }
+    }
+    free(table);
+}
+
 static const ted4_command COMMAND = {
     "ted4enc",
     "SCENE -o FILE.ted4 [options]",
@@ -122,11 +149,14 @@ static const ted4_command COMMAND = {
     "ted4-UID in $TMPDIR or /tmp.",
     OPTIONS,
     N_OPTIONS,
-    "Exit codes: 0 fine, 2 fine but larger than --target-size, 3 usage, input, output or "
-    "resources,\n"
-    "130 stopped by Ctrl-C, 143 by a request to end: after the step, with a last checkpoint.\n\n"
+    "Exit codes: 0 fine, 2 fine but larger than --target-size, 3 usage, input, output\n"
+    "or resources, 130 stopped by Ctrl-C, 143 by a request to end: after the step,\n"
+    "with a last checkpoint.\n\n"
+    "Examples:\n"
+    "  ted4enc --check scene\n"
+    "  ted4enc scene -o a.ted4 --preset draft --downscale 2 --cameras\n\n"
     "Training options (--set) and their values in each preset:\n",
-    ted4_options_help,
+    print_training_options,
 };
 
 /* Options that can be applied only after the preset. */

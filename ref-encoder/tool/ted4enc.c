@@ -252,7 +252,7 @@ static int work(const ted4_request *r, ted4_teller *teller, const ted4_parallel 
     ted4_teller_say(teller, "loading %s", r->scene);
     if (ted4_dataset_load(&d, r->scene, &wanted, &m) != 0) {
         if (r->check)
-            ted4_check_report(NULL, m.text, r->json);
+            ted4_check_report(NULL, &r->options, m.text, r->json);
         return complain(teller, m.text);
     }
 
@@ -265,7 +265,7 @@ static int work(const ted4_request *r, ted4_teller *teller, const ted4_parallel 
     const int bad = ted4_dataset_verify(&d, p, &m) != 0 || scatter(&d, r, p, teller, &m) != 0;
 
     if (r->check)
-        ted4_check_report(&d, bad ? m.text : NULL, r->json);
+        ted4_check_report(&d, &r->options, bad ? m.text : NULL, r->json);
     if (bad)
         status = complain(teller, m.text);
     warn(teller, &d, said);

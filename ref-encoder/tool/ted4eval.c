@@ -81,9 +81,10 @@ static const ted4_command COMMAND = {
     "range 2), MS-SSIM, bytes of the file, milliseconds to decode it, pictures drawn per second.",
     OPTIONS,
     N_OPTIONS,
-    "Exit codes: 0 fine, 1 file refused, 3 usage, input, output or resources, or the file cannot "
-    "be\n"
-    "of this scene.\n",
+    "Exit codes: 0 fine, 1 file refused, 3 usage, input, output or resources, or the\n"
+    "file cannot be of this scene.\n\n"
+    "Examples:\n"
+    "  ted4eval a.ted4 scene --downscale 2 --sheet sheet.png\n",
     NULL,
 };
 

@@ -112,6 +112,46 @@ static void test_times(void **state)
     assert_int_equal(t.den, (1u << 24) - 1);
 }
 
+static void expect_second(const char *text, uint32_t frames, uint32_t rate_num, uint32_t rate_den,
+                          uint32_t num, uint32_t den)
+{
+    ted4_seconds s;
+
+    assert_int_equal(ted4_seconds_parse(text, &s), 0);
+    const ted4_time t = ted4_time_of_seconds(s, frames, rate_num, rate_den);
+
+    if (t.num != num || t.den != den)
+        fail_msg("%s: %u/%u, expected %u/%u", text, (unsigned)t.num, (unsigned)t.den, (unsigned)num,
+                 (unsigned)den);
+}
+
+/* R-MED-001, with exact fractions. */
+static void test_seconds(void **state)
+{
+    static const char *const bad[] = { "",         "s",   "1",   "1.s",         ".5s", "-1s",
+                                       "1000000s", "1.5", "1 s", "0.12345678s", "1s ", "nans" };
+    ted4_seconds s;
+
+    (void)state;
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
+        assert_int_equal(ted4_seconds_parse(bad[i], &s), -1);
+    expect_second("0s", 60, 30, 1, 0, 1);
+    expect_second("1s", 61, 30, 1, 1, 2);
+    expect_second("1.5s", 61, 30, 1, 3, 4);
+    expect_second("1.50s", 61, 30, 1, 3, 4);
+    expect_second("0.5s", 16, 30000, 1001, 1000, 1001); /* 15 frames of 30000/1001 end at 0.5005 */
+    expect_second("0.5005s", 16, 30000, 1001, 1, 1);
+    expect_second("99s", 61, 30, 1, 1, 1);
+    expect_second("99s", 1, 30, 1, 0, 1);
+    /* Denominators below 2^24 stay; others become 2^24 - 1. */
+    expect_second("0.1234567s", 2, 1, 1, 1234567, 10000000);
+    expect_second("0.1234567s", 4, 1, 1, 690420, 16777215); /* 690419.87 */
+    /* Terms of more than 64 bits. */
+    expect_second("0.5s", UINT32_MAX, UINT32_MAX - 2, 1, 8388607, 16777215); /* 8388607.50 */
+    expect_second("999999.9999999s", UINT32_MAX, 1, 4294967291u, 0, 16777215);
+    expect_second("999999.9999999s", UINT32_MAX, 4294967291u, 1000001, 16777198, 16777215);
+}
+
 static void test_numbers(void **state)
 {
     static const char *const bad[] = { "", "x", "1x", "11", "-1", "99999999999999999999", "1.5" };
@@ -176,9 +216,8 @@ static void test_table(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_patterns),
-        cmocka_unit_test(test_times),
-        cmocka_unit_test(test_numbers),
+        cmocka_unit_test(test_patterns), cmocka_unit_test(test_times),
+        cmocka_unit_test(test_seconds),  cmocka_unit_test(test_numbers),
         cmocka_unit_test(test_table),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

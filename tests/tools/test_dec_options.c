@@ -1,6 +1,7 @@
 /* test_dec_options.c - the command line of ted4dec: verdicts and exit codes, what is refused and
  * how, defaults. SPDX-License-Identifier: BSD-2-Clause */
 #include <jansson.h>
+#include <math.h>
 
 #include "tool_files.h"
 
@@ -70,7 +71,7 @@ static void test_usage(void **state)
 {
     static const char *const wrong[][2] = {
         { "", "expected one file, found 0" },
-        { "v1.ted4 v0.ted4", "expected one file, found 2" },
+        { "v1.ted4 v0.ted4 --hash", "expected one file, found 2" },
         { "v1.ted4 out.ply", "expected one file; -o out.ply writes Gaussians" },
         { "v1.ted4 -o a.doc",
           "bad value a.doc; expected a name that ends in .ply, .splat, .glb or" },
@@ -78,7 +79,7 @@ static void test_usage(void **state)
         { "v1.ted4 -o a.ply", "several frames need a %d in the name" },
         { "v1.ted4 --hash --frames 0:999", "--frames" },
         { "v1.ted4 --hash --frames 1 --time 0", "only one of them" },
-        { "v1.ted4 --time 1.5", "--time: bad value 1.5; expected 0 to 1" },
+        { "v1.ted4 --time 1.5", "--time: bad value 1.5; expected seconds, as 1.5s, or 0 to 1" },
         { "v1.ted4 --render a.png", "--render: goes with one of --camera, --orbit and --path" },
         { "v1.ted4 --render a.png --orbit 3 --path a.json", "goes with one of" },
         { "v1.ted4 --orbit 3", "only with --render" },
@@ -205,13 +206,82 @@ static void test_up(void **state)
     free(kept);
 }
 
+static size_t count(const char *text, char c)
+{
+    size_t n = 0;
+
+    for (; *text != '\0'; text++)
+        n += *text == c;
+    return n;
+}
+
+/* Several files: each is checked, and the worst exit code stays. */
+static void test_several(void **state)
+{
+    (void)state;
+    need_programs();
+    write_contents("bad.ted4", "no", 2);
+    assert_int_equal(run("ted4dec v0.ted4 v1.ted4 v2.ted4 --test"), 0);
+    assert_int_equal(run("ted4dec v0.ted4 bad.ted4 v1.ted4 --json 2>/dev/null"), 1);
+    assert_int_equal(count(out, '\n'), 3);
+    assert_int_equal(run("ted4dec v0.ted4 missing.ted4 bad.ted4 v1.ted4"), 3);
+    assert_int_equal(run("ted4info v0.ted4 bad.ted4 v1.ted4"), 1);
+    assert_non_null(strstr(out, "v0.ted4: TED4"));
+    assert_non_null(strstr(out, "\nv1.ted4: TED4"));
+    assert_int_equal(run("ted4info v0.ted4 v1.ted4 --budget --json"), 0);
+    assert_int_equal(count(out, '\n'), 2);
+    assert_int_equal(run("ted4info v0.ted4 v1.ted4 --cameras"), 3);
+    assert_int_equal(run("ted4info"), 3);
+}
+
+/* Seconds are those of R-MED-001. */
+static void test_seconds(void **state)
+{
+    const ted4_info *const info = &file[1].info;
+    const double last = (double)(info->frames - 1) * info->rate_den / info->rate_num;
+    char first[MAX_TEXT];
+
+    (void)state;
+    need_programs();
+    assert_int_equal(run("ted4dec v1.ted4 --hash --frames %u", (unsigned)(info->frames - 1)), 0);
+    strcpy(first, strstr(out, ",0 ") != NULL ? strrchr(out, ' ') : "");
+    assert_int_equal(run("ted4dec v1.ted4 --hash --time %.7fs", fmin(last + 1.0, 999999.0)), 0);
+    assert_string_equal(strrchr(out, ' '), first);
+    assert_int_equal(run("ted4info v1.ted4 --json"), 0);
+    json_t *const o = json_loads(out, 0, NULL);
+
+    assert_true(fabs(json_number_value(json_object_get(o, "seconds")) - last) <= 1e-6 * last);
+    json_decref(o);
+}
+
+/* Help fits a terminal, and has an example. */
+static void test_help(void **state)
+{
+    static const char *const program[] = { "ted4dec", "ted4info", "ted4enc", "ted4eval",
+                                           "ted4edit" };
+
+    (void)state;
+    need_programs();
+    for (size_t i = 0; i < sizeof program / sizeof *program; i++) {
+        assert_int_equal(run("%s --help", program[i]), 0);
+        assert_non_null(strstr(out, "\nExamples:\n"));
+        for (const char *line = out; *line != '\0';) {
+            const size_t n = strcspn(line, "\n");
+
+            if (n > 80)
+                fail_msg("%s: %.*s", program[i], (int)n, line);
+            line += n + (line[n] == '\n');
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_verdicts),
-        cmocka_unit_test(test_usage),
-        cmocka_unit_test(test_default_degree),
-        cmocka_unit_test(test_up),
+        cmocka_unit_test(test_verdicts),       cmocka_unit_test(test_usage),
+        cmocka_unit_test(test_default_degree), cmocka_unit_test(test_up),
+        cmocka_unit_test(test_several),        cmocka_unit_test(test_seconds),
+        cmocka_unit_test(test_help),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }
