@@ -40,7 +40,7 @@ inside hash '' "ted4dec --hash $vector | cut -d' ' -f2 >hash && test -s hash"
 inside scene '' 'ted4scene turn -o turn --size 32x32 --cameras 3 --frames 2'
 inside train '' \
     'ted4enc turn -o turn.ted4 --preset draft --iterations 20,20 --capacity fixed -q && ted4info turn.ted4'
-inside measure PSNR 'ted4eval turn.ted4 turn --anyway'
+inside measure psnr 'ted4eval turn.ted4 turn --anyway'
 
 inside install_dev '' \
     "$apt ./libted4dec-dev_*.deb gcc libc6-dev pkg-config cmake make man-db file bash-completion"

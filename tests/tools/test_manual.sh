@@ -78,6 +78,7 @@ if has bash; then
     completes bash_path CHANGELOG.md ted4dec x.ted4 -o CHANGE
     completes bash_equals CHANGELOG.md ted4dec x.ted4 --output = CHANGE
     completes bash_value "" ted4dec --time ""
+    completes bash_nothing "" ted4dec --no-such
     completes bash_subcommand "run replay" ted4conf r
     completes bash_of_subcommand "--jobs --json --junit" ted4conf run --j
     completes bash_operand CHANGELOG.md /usr/bin/ted4info CHANGE
