@@ -6,10 +6,22 @@
 
 enum { COLUMNS = 78 };
 
+/* Characters that need an escape, which has up to three characters more. */
+static const char signs[] = "\\-'`^~\"";
+
+/* The most columns that a word takes in the source. */
+static size_t width(const char *word, size_t n)
+{
+    size_t columns = n;
+
+    for (size_t i = 0; i < n; i++)
+        columns += strchr(signs, word[i]) != NULL ? 3 : 0;
+    return columns;
+}
+
 /* Writes one character. Without an escape, some would be instructions or typographic signs. */
 static void put(FILE *f, char c, int at_start)
 {
-    static const char signs[] = "\\-'`^~\"";
     static const char *const names[] = {
         "\\e", "\\-", "\\(aq", "\\(ga", "\\(ha", "\\(ti", "\\(dq"
     };
@@ -63,7 +75,7 @@ void ted4_mdoc_text(FILE *f, const char *text, size_t n)
 
         if (length > (size_t)(end - text))
             length = (size_t)(end - text);
-        if (column > 0 && column + 1 + length > COLUMNS) {
+        if (column > 0 && column + 1 + width(text, length) > COLUMNS) {
             fputc('\n', f);
             column = 0;
         } else if (column > 0) {
@@ -71,7 +83,7 @@ void ted4_mdoc_text(FILE *f, const char *text, size_t n)
             column++;
         }
         prose(f, text, length, column == 0);
-        column += length;
+        column += width(text, length);
         if (ends_sentence(text, length)) {
             fputc('\n', f);
             column = 0;
