@@ -5,7 +5,7 @@ set -e
 export LC_ALL=C
 out=$1
 mkdir -p "$out"
-cp spec/html/style.css spec/rules.json spec/errors.json "$out/"
+cp spec/html/style.css spec/rules.json spec/errors.json spec/*.svg "$out/"
 SPEC_RULES=$out/rules.txt
 export SPEC_RULES
 grep -oE '^\*\*R-[A-Z]{3}-[0-9]{3}\*\*' spec/*.md |
@@ -25,8 +25,12 @@ for f in $files; do
 done
 pandoc -f gfm -t html5 --no-highlight --template=spec/html/page.html \
     --lua-filter=spec/html/anchors.lua -M pagetitle=Changelog -o "$out/CHANGELOG.html" CHANGELOG.md
-# Every link within the pages leads to a page, and to an anchor where it names one.
+# Every link within the pages leads to a page, and to an anchor where it names one; figures are
+# there.
 bad=0
+for figure in $(grep -ohE 'src="[^":]+"' "$out"/*.html | sed 's/src="//; s/"$//' | sort -u); do
+    [ -f "$out/$figure" ] || { echo "no figure $figure"; bad=1; }
+done
 for link in $(grep -ohE 'href="[^":]+"' "$out"/*.html | sed 's/href="//; s/"$//' | sort -u); do
     file=${link%%#*}
     case $link in \#*) continue ;; esac
