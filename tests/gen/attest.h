@@ -1,5 +1,5 @@
 /* attest.h - the byte strings of annex J.9: defined functions over all their inputs, hashed. The
- * short ones are checked by test_spec_annexes.c, all of them by `make attest`.
+ * short ones and samples of the others are checked by test_spec_annexes.c, all by `make attest`.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_ATTEST_H
 #define TED4_ATTEST_H
@@ -59,12 +59,13 @@ static inline uint32_t attest_bits(float x)
     return x == x ? ted4_float_bits(x) : 0x7fc00000;
 }
 
-static inline void attest_real(float (*f)(float x), const char *name, FILE *out)
+/* f over the binary32 patterns 0, stride, 2 stride, ... below 2^32. */
+static inline void attest_real(float (*f)(float x), uint32_t stride, const char *name, FILE *out)
 {
     attest_string a;
 
     attest_begin(&a);
-    for (uint64_t i = 0; i < (uint64_t)1 << 32; i++)
+    for (uint64_t i = 0; i < (uint64_t)1 << 32; i += stride)
         attest_put(&a, attest_bits(f(ted4_bits_float((uint32_t)i))));
     attest_end(&a, name, out);
 }
@@ -79,16 +80,17 @@ static inline void attest_sine(FILE *out)
     attest_end(&a, "sine", out);
 }
 
-static inline void attest_cum(FILE *out)
+/* For g = 0, g_stride, ... and for fr = 0, fr_stride, ...: all j. */
+static inline void attest_cum(unsigned g_stride, int32_t fr_stride, const char *name, FILE *out)
 {
     attest_string a;
 
     attest_begin(&a);
-    for (unsigned g = 0; g < TED4_N_SIGMA; g++)
-        for (int32_t fr = 0; fr < 256; fr++)
+    for (unsigned g = 0; g < TED4_N_SIGMA; g += g_stride)
+        for (int32_t fr = 0; fr < 256; fr += fr_stride)
             for (uint32_t j = 0; j <= ted4_gauss_size(g); j++)
                 attest_put(&a, ted4_gauss_cum(g, fr, j));
-    attest_end(&a, "cum", out);
+    attest_end(&a, name, out);
 }
 
 /* X of every legal pattern of |p| <= 1 in ascending order of the pattern. */
@@ -126,7 +128,16 @@ static inline void attest_short(FILE *out)
     attest_q24(out);
     attest_sine(out);
     attest_rne(out);
-    attest_cum(out);
+    attest_cum(1, 1, "cum", out);
+}
+
+/* Samples of the long ones; the strides are primes, so that every exponent is met with many
+ * fractions. In seconds. */
+static inline void attest_samples(FILE *out)
+{
+    attest_cum(13, 37, "cum, sampled", out);
+    attest_real(ted4_pow2, 4093, "pow2, sampled", out);
+    attest_real(ted4_sigmoid, 4093, "sigmoid, sampled", out);
 }
 
 #endif
