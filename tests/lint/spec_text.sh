@@ -1,6 +1,7 @@
 #!/bin/sh
 # The text of the specification: links between its files lead somewhere, cited sections exist,
-# chapters and annexes stand in the README's table, and no line names an absolute path or a host.
+# chapters and annexes stand in the README's table, no line names an absolute path or a host, and
+# printed code has no shift whose precedence a reader has to know.
 export LC_ALL=C
 bad=0
 for l in $(grep -ohE '\]\([^)#]+' spec/*.md | sed 's/](//' | sort -u); do
@@ -10,8 +11,8 @@ for f in spec/[0-9]*.md spec/annex-*.md spec/errata.md; do
     grep -q "($(basename "$f"))" spec/README.md ||
         { echo "$f: not in the table of spec/README.md"; bad=1; }
 done
-headings=$(sed -nE 's/^#+ (Annex )?([0-9A-L][0-9.]*)( .*)?$/\2/p' spec/[0-9]*.md spec/annex-*.md)
-for n in $(grep -ohE '\b([1-9][0-9]?\.[0-9]+|[A-L]\.[0-9]+)\)' spec/[0-9]*.md spec/annex-[c-l]*.md \
+headings=$(sed -nE 's/^#+ (Annex )?([0-9A-M][0-9.]*)( .*)?$/\2/p' spec/[0-9]*.md spec/annex-*.md)
+for n in $(grep -ohE '\b([1-9][0-9]?\.[0-9]+|[A-M]\.[0-9]+)\)' spec/[0-9]*.md spec/annex-[c-m]*.md \
     spec/README.md | tr -d ')' | sort -u); do
     echo "$headings" | grep -qxF "$n" ||
         { echo "spec: section $n is cited, but no such heading"; bad=1; }
@@ -22,4 +23,12 @@ for f in spec/*.md; do
     [ "$(grep -c '^```' "$f")" = "$(( $(grep -c '^```' "$f") / 2 * 2 ))" ] ||
         { echo "$f: a code block is not closed"; bad=1; }
 done
+# Printed code (4.5): a shift beside a mask stands in parentheses.
+awk '
+    FNR == 1 || /^```/ { code = /^```c$/ }
+    code && /(<<|>>) [^()&|^,;]* [&|^] / {
+        print FILENAME ":" FNR ": a shift and a mask without parentheses"
+        bad = 1
+    }
+    END { exit bad }' spec/*.md || bad=1
 exit $bad
