@@ -79,12 +79,12 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     if (!soon(data, n) || ted4_decode(data, n, &o, &s, &e) == TED4_E_LIMIT_MEMORY)
         return 0;
     spec_tiers_make(&t, data, n);
-    if (t.model.v.id == NULL) {
+    if (t.model.p.v.id == NULL) {
         fuzz_require(e.code == TED4_OK, "both find it valid");
         same_tiers(&t, s, data, n);
     } else {
-        fuzz_require(strcmp(t.model.v.id, ted4_status_id(e.code)) == 0, "one identifier");
-        fuzz_require(t.model.v.offset == e.offset, "one offset");
+        fuzz_require(strcmp(t.model.p.v.id, ted4_status_id(e.code)) == 0, "one identifier");
+        fuzz_require(t.model.p.v.offset == e.offset, "one offset");
     }
     spec_tiers_free(&t);
     ted4_scene_free(s);

@@ -20,7 +20,7 @@ class_t *class_t_open(const uint8_t *data, size_t size, const char **why)
     if (c == NULL)
         return NULL;
     spec_model_decode(&c->model, data, size);
-    *why = c->model.v.id;
+    *why = c->model.p.v.id;
     if (*why == NULL)
         return c;
     class_t_close(c);
@@ -40,7 +40,7 @@ static int evaluate(const class_t *c, const class_t_query *q, tol_reference *t)
 {
     memset(t, 0, sizeof *t);
     return q->den >= 1 && q->den < 1u << 24 && q->num <= q->den &&
-           tol_make(t, &c->model.s, q->num, q->den, q->camera);
+           tol_make(t, &c->model.p.s, q->num, q->den, q->camera);
 }
 
 int class_t_bounds(const class_t *c, const class_t_query *q, class_t_thresholds *out)

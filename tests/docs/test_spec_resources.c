@@ -31,12 +31,12 @@ static void fits(const uint8_t *data, size_t size, const ted4_parallel *p, uint6
     uint64_t v;
 
     spec_model_decode(&m, data, size);
-    assert_null(m.v.id);
-    v = m.n_nete + m.n_netr + m.n_bank;
-    o.max_bytes = memory_e(&m.s.h, size, v, tiles < m.n_tiles ? tiles : m.n_tiles);
+    assert_null(m.p.v.id);
+    v = m.p.n_nete + m.p.n_netr + m.p.n_bank;
+    o.max_bytes = memory_e(&m.p.s.h, size, v, tiles < m.p.n_tiles ? tiles : m.p.n_tiles);
     assert_int_equal(ted4_decode(data, size, &o, &s, NULL), TED4_OK);
     ted4_scene_info(s, &info);
-    o.max_bytes = memory_r(&m.s.h, v, info.n_gaussians);
+    o.max_bytes = memory_r(&m.p.s.h, v, info.n_gaussians);
     assert_int_equal(ted4_recon_new(&r, s, &o), TED4_OK);
     ted4_recon_free(r);
     ted4_scene_free(s);
@@ -76,18 +76,18 @@ static void works(const uint8_t *data, size_t size)
     ted4_info info;
 
     spec_model_decode(&m, data, size);
-    for (int i = 0; i < m.s.h.n_slices; i++)
-        a_e += spec_products(&m.net_e[i]);
+    for (int i = 0; i < m.p.s.h.n_slices; i++)
+        a_e += spec_products(&m.p.net_e[i]);
     for (int i = 0; i < NETS_R; i++)
-        a_r += spec_products(&m.net_r[i]);
-    least = work_e(&m.s.h, size, m.n_nete + m.n_netr + m.n_bank, a_e);
+        a_r += spec_products(&m.p.net_r[i]);
+    least = work_e(&m.p.s.h, size, m.p.n_nete + m.p.n_netr + m.p.n_bank, a_e);
     o.max_work = least - 1;
     assert_int_equal(ted4_decode(data, size, &o, &s, &e), TED4_E_LIMIT_WORK);
     assert_null(s);
     o.max_work = least;
     assert_int_equal(ted4_decode(data, size, &o, &s, &e), TED4_OK);
     ted4_scene_info(s, &info);
-    least = work_r(&m.s.h, a_r, info.n_gaussians);
+    least = work_r(&m.p.s.h, a_r, info.n_gaussians);
     o.max_work = least - 1;
     assert_int_equal(ted4_recon_new(&r, s, &o), TED4_E_LIMIT_WORK);
     assert_null(r);
@@ -195,7 +195,7 @@ static void syntax(void **state)
         uint8_t *data = encoded(s, &size);
 
         spec_model_decode(&m, data, size);
-        t.n_head = head_elements(&m.s.h, head);
+        t.n_head = head_elements(&m.p.s.h, head);
         assert_int_equal(ted4_decode(data, size, &o, &back, NULL), TED4_OK);
         assert_true(t.good);
         assert_int_equal(t.seen, t.n_head);

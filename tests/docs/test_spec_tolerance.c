@@ -24,12 +24,12 @@ static int for_each(void (*check)(const tol_reference *t, const struct scene *s)
 
         assert_int_equal(ted4_encode(s, 0, NULL, &data, &size, NULL), TED4_OK);
         spec_model_decode(&m, data, size);
-        assert_null(m.v.id);
+        assert_null(m.p.v.id);
         for (uint32_t num = 0; num < 3; num++) {
             tol_reference t = { .n = 0 };
 
-            if (tol_make(&t, &m.s, num, 2, camera) && t.n > 0) {
-                check(&t, &m.s);
+            if (tol_make(&t, &m.p.s, num, 2, camera) && t.n > 0) {
+                check(&t, &m.p.s);
                 n++;
             }
             tol_free(&t);

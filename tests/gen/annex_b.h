@@ -155,7 +155,7 @@ typedef struct {
 static inline const uint8_t *annex_b_masks(const annex_b_tile *b, const uint8_t *p, size_t size,
                                            const uint32_t prob[7])
 {
-    const struct scene *s = &b->t.model.s;
+    const struct scene *s = &b->t.model.p.s;
     struct coder c;
 
     annex_b_steps_head(b->out, "mask_substream", p, size);
@@ -195,7 +195,7 @@ static inline int32_t annex_b_escape(int32_t mu, int g, int32_t k)
 static inline const uint8_t *annex_b_attributes(const annex_b_tile *b, const char *name, int type,
                                                 int comp, int n, const uint8_t *p, size_t size)
 {
-    const struct scene *s = &b->t.model.s;
+    const struct scene *s = &b->t.model.p.s;
     uint64_t n_symbols = 0;
     struct coder c;
 
@@ -233,7 +233,7 @@ static inline void annex_b_tile_done(void *user, uint32_t number)
     static const char *const name[TYPES] = { "feature_substream", "scaling_substream",
                                              "offset_substream", "phi_substream", "tau_substream" };
     annex_b_tile *b = user;
-    const struct header *h = &b->t.model.s.h;
+    const struct header *h = &b->t.model.p.s.h;
     uint32_t prob[7] = { 0 };
     const uint8_t *at = b->payload + 4, *size, *p;
     int comp = 0;
@@ -287,8 +287,8 @@ static inline void annex_b_query(FILE *out, const spec_model *m, uint32_t num, u
             ", camera centre (%g, %g, %g):\n\n| record | position | scale | rotation | opacity | "
             "colour |\n|---|---|---|---|---|---|\n",
             num, den, (double)camera[0], (double)camera[1], (double)camera[2]);
-    for (size_t a = 0, i = 0; a < (size_t)m->s.h.n_anchors; a++) {
-        const int n = anchor_records(&m->s, m->net_r, a, num, den, camera, record);
+    for (size_t a = 0, i = 0; a < (size_t)m->p.s.h.n_anchors; a++) {
+        const int n = anchor_records(&m->p.s, m->p.net_r, a, num, den, camera, record);
 
         for (int k = 0; k < n; k++, i++) {
             fprintf(out, "| %zu", i);
@@ -351,12 +351,12 @@ static inline void annex_b_file(FILE *out, int section, const uint8_t *data, siz
             "escape covers all its bits.\n",
             section);
     spec_model_decode(&b.t.model, data, size);
-    if (b.t.model.v.id != NULL)
+    if (b.t.model.p.v.id != NULL)
         abort();
     spec_t0(&b.t.tier[0], &b.t.model, data, size);
-    spec_t1(&b.t.tier[1], &b.t.model.s);
+    spec_t1(&b.t.tier[1], &b.t.model.p.s);
     fprintf(out, "\n### B.%d.3 Values\n", section);
-    annex_b_values(out, &b.t.model.s);
+    annex_b_values(out, &b.t.model.p.s);
     fprintf(out, "\n### B.%d.4 Records\n", section);
     for (int i = 0; i < n_times; i++)
         annex_b_query(out, &b.t.model, (uint32_t)i, n_times > 1 ? (uint32_t)n_times - 1 : 1,

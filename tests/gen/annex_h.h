@@ -7,7 +7,7 @@
 
 #include <inttypes.h>
 #include <stdio.h>
-#include "spec_model.h"
+#include "spec_head.h"
 #include "annex_b_files.h"
 #include "norm/coder.h"
 #include "norm/gaussian.h"

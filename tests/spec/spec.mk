@@ -1,7 +1,8 @@
 # What the specification prints, as C: spec/code.h and tables as *.inc, under the build folder, for
 # tests/support/spec_model.h and spec_tiers.h.
 SPEC_ORDER = 04-notation annex-k-xxh3 annex-l-deflate 05-container 06-header 07-networks \
-        08-positions 09-entropy 10-attributes 12-arithmetic 11-reconstruction 13-levels
+        08-positions 09-entropy 10-attributes 12-arithmetic 11-reconstruction 13-levels \
+        annex-m-pass2
 SPEC_CODE  = $(SPEC_ORDER:%=spec/%.md)
 SPEC_INC   = $(addprefix $B/inc/spec/,code.h head.inc levels.inc elements.inc)
 

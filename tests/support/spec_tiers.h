@@ -1,6 +1,6 @@
-/* spec_tiers.h - the byte strings of annex J, made by the specification's own code (spec_model.h):
- * T0 from a valid file, T1 to T4 from the decoded integers, T5 from queries. Element numbers come
- * from the table of J.2.
+/* spec_tiers.h - the byte strings of annex J, made by what the specification prints (spec_model.h):
+ * T0 from a valid file, T1 to T4 from what was decoded, T5 from queries. Element numbers come from
+ * the table of J.2.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_SPEC_TIERS_H
 #define TED4_SPEC_TIERS_H
@@ -14,6 +14,30 @@ enum {
     N_TIERS = 5
 };
 
+/* A byte string that grows. */
+typedef struct {
+    uint8_t *data;
+    size_t size, capacity;
+} spec_bytes;
+
+static inline void spec_put(spec_bytes *b, uint64_t x, int width)
+{
+    if (b->capacity - b->size < 8) {
+        b->capacity = 2 * b->capacity + 64;
+        b->data = realloc(b->data, b->capacity);
+        if (b->data == NULL)
+            abort();
+    }
+    for (int i = 0; i < width; i++)
+        b->data[b->size++] = (uint8_t)(x >> 8 * i);
+}
+
+static inline size_t spec_tile_end(const struct header *h, size_t first)
+{
+    return (size_t)(h->n_anchors - (int64_t)first < h->tile_size ? h->n_anchors
+                                                                 : (int64_t)first + h->tile_size);
+}
+
 /* T0 to T4 of one file. */
 typedef struct {
     spec_model model;
@@ -25,7 +49,7 @@ static inline uint32_t spec_load(const uint8_t *p, int width)
     return width == 1 ? p[0] : width == 2 ? load16(p) : load32(p);
 }
 
-/* Adds the next n numbers of a file, each as a record. */
+/* The next n numbers of a file, each a record. */
 static inline const uint8_t *spec_t0_numbers(spec_bytes *b, int id, const uint8_t *p, int width,
                                              size_t n)
 {
@@ -102,21 +126,21 @@ static inline void spec_t0_payload(spec_bytes *b, const spec_model *m, int kind,
                                    size_t n)
 {
     switch (kind) {
-    case 0: spec_t0_head(b, &m->s.h, p); break;
+    case 0: spec_t0_head(b, &m->p.s.h, p); break;
     case 1:
-        spec_t0_numbers(b, ID_shift, p, 1, m->n_units);
-        spec_t0_blob(b, ID_nete, p + m->n_units, m->n_nete, n - m->n_units);
+        spec_t0_numbers(b, ID_shift, p, 1, m->p.n_units);
+        spec_t0_blob(b, ID_nete, p + m->p.n_units, m->p.n_nete, n - m->p.n_units);
         break;
-    case 2: spec_t0_blob(b, ID_netr, p, m->n_netr, n); break;
-    case 3: spec_t0_blob(b, ID_bank, p, m->n_bank, n); break;
-    case 4: spec_t0_numbers(b, ID_position, p, 2, 3 * (size_t)m->s.h.n_anchors); break;
-    case 5: spec_t0_tile(b, &m->s.h, p); break;
+    case 2: spec_t0_blob(b, ID_netr, p, m->p.n_netr, n); break;
+    case 3: spec_t0_blob(b, ID_bank, p, m->p.n_bank, n); break;
+    case 4: spec_t0_numbers(b, ID_position, p, 2, 3 * (size_t)m->p.s.h.n_anchors); break;
+    case 5: spec_t0_tile(b, &m->p.s.h, p); break;
     case 6: spec_t0_bytes(b, ID_ends_hash, p, n); break;
     default: spec_t0_bytes(b, ID_ancillary, p, n); break;
     }
 }
 
-/* J.2, for a file that m found valid */
+/* J.2, of a file that m found valid */
 static inline void spec_t0(spec_bytes *b, const spec_model *m, const uint8_t *file, size_t size)
 {
     size_t at = 12;
@@ -147,10 +171,10 @@ static inline void spec_t1(spec_bytes *b, const struct scene *s)
     }
 }
 
-/* Returns mu of a component of an anchor in the tile decoded last; s follows dim later. */
+/* mu of a component of an anchor of the tile decoded last; s follows dim later. */
 static inline const int32_t *spec_mu(const spec_model *m, int type, int comp, size_t i)
 {
-    return m->model + i * (size_t)n_outputs(&m->s.h) + first_output(&m->s.h, type) + comp;
+    return m->p.model + i * (size_t)n_outputs(&m->p.s.h) + first_output(&m->p.s.h, type) + comp;
 }
 
 static inline int16_t spec_k(const struct scene *s, int type, int comp, size_t anchor)
@@ -158,7 +182,7 @@ static inline int16_t spec_k(const struct scene *s, int type, int comp, size_t a
     return s->symbol[type][(size_t)comp * (size_t)s->h.n_anchors + anchor];
 }
 
-/* J.5, for one substream: components comp .. comp + n_comps - 1 */
+/* J.5, one substream: components comp .. comp + n_comps - 1 */
 static inline void spec_t3_substream(spec_bytes *b, const struct scene *s, int type, int comp,
                                      int n_comps, size_t first, size_t end)
 {
@@ -196,12 +220,12 @@ static inline void spec_t3_masks(spec_bytes *b, const struct scene *s, size_t fi
         spec_put(b, 65536, 4);
 }
 
-/* J.4 to J.6 for a tile, while its model is available */
+/* J.4 to J.6 of a tile, while its model is there */
 static inline void spec_tile_done(void *user, uint32_t number)
 {
     spec_tiers *t = user;
     const spec_model *m = &t->model;
-    const struct scene *s = &m->s;
+    const struct scene *s = &m->p.s;
     const size_t first = (size_t)number * (size_t)s->h.tile_size, end = spec_tile_end(&s->h, first);
     int comp = 0;
 
@@ -236,8 +260,8 @@ static inline void spec_t5(spec_bytes *b, const spec_model *m, uint32_t num, uin
 {
     float record[16][14];
 
-    for (size_t a = 0; a < (size_t)m->s.h.n_anchors; a++) {
-        const int n = anchor_records(&m->s, m->net_r, a, num, den, camera, record);
+    for (size_t a = 0; a < (size_t)m->p.s.h.n_anchors; a++) {
+        const int n = anchor_records(&m->p.s, m->p.net_r, a, num, den, camera, record);
 
         for (int i = 0; i < 14 * n; i++) {
             uint32_t pattern;
@@ -248,16 +272,16 @@ static inline void spec_t5(spec_bytes *b, const spec_model *m, uint32_t num, uin
     }
 }
 
-/* t: zeroed. t->model.v says whether tiers were made. */
+/* t: zeroed. t->model.p.v says whether there are tiers. */
 static inline void spec_tiers_make(spec_tiers *t, const uint8_t *file, size_t size)
 {
     t->model.tile_done = spec_tile_done;
     t->model.user = t;
     spec_model_decode(&t->model, file, size);
-    if (t->model.v.id != NULL)
+    if (t->model.p.v.id != NULL)
         return;
     spec_t0(&t->tier[0], &t->model, file, size);
-    spec_t1(&t->tier[1], &t->model.s);
+    spec_t1(&t->tier[1], &t->model.p.s);
 }
 
 static inline void spec_tiers_free(spec_tiers *t)
