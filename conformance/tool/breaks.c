@@ -23,6 +23,7 @@
  *     do value REF INDEX PATTERN           sets a value of the blob in REF, for `do pack` only; the
  *                                          file itself does not change
  *     do pack REF WAY FAULT                packs the blob's values again, with a fault
+ *     do blocks REF WORD...                packs them in blocks that the words spell out: blocks.h
  *     do pack-zeros REF N                  packs a blob of N bytes of zeros
  *     do inject TILE SUB SYMBOL value K | escape E low|high | ones N      see inject.h
  *     do symbol TYPE COMP ANCHOR K         sets a symbol that contradicts another one
@@ -32,6 +33,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/bytes.h"
+#include "blocks.h"
 #include "inject.h"
 #include "norm/coder.h"
 #include "pack.h"
@@ -333,23 +335,28 @@ static void value(const conf_build *b, const conf_line *l)
     blob->values[conf_line_number(l, 3, 0, (long long)blob->n - 1)] = conf_word_float(l, 4);
 }
 
+/* do pack, do blocks */
 static void pack(conf_stream *s, const conf_build *b, const conf_line *l)
 {
     const int chunk = conf_stream_chunk(s, l, l->word[2]);
     conf_bytes *const p = &s->chunk[chunk].payload;
-    const int way = l->n > 3 ? conf_pack_way_of(l->word[3]) : -1,
-              fault = l->n > 4 ? conf_pack_fault_of(l->word[4]) : -1;
+    const int spelt = conf_word_is(l, 1, "blocks");
+    const int way = !spelt && l->n > 3 ? conf_pack_way_of(l->word[3]) : -1,
+              fault = !spelt && l->n > 4 ? conf_pack_fault_of(l->word[4]) : -1;
     const ted4_blob *blob = blob_of(b, l);
     const size_t head = conf_word_is(l, 2, "NETE") ? b->scene->shape.n_units : 0;
     uint8_t *bytes;
 
-    if (way < 0 || fault < 0)
+    if (!spelt && (way < 0 || fault < 0))
         conf_line_bad(l, "pack REF WAY FAULT");
     bytes = conf_alloc(blob->n, 4);
     conf_shuffle(bytes, blob->values, blob->n);
     conf_remove(p, head, p->size - head);
     conf_add(p, "\1", 1);
-    conf_pack(p, bytes, 4 * blob->n, (conf_pack_way)way, (conf_pack_fault)fault);
+    if (spelt)
+        conf_blocks(p, l, 3, bytes, 4 * blob->n);
+    else
+        conf_pack(p, bytes, 4 * blob->n, (conf_pack_way)way, (conf_pack_fault)fault);
     free(bytes);
 }
 
@@ -433,7 +440,7 @@ void conf_stream_do(conf_stream *s, conf_build *b, const conf_line *l)
 
     if (strcmp(what, "value") == 0)
         value(b, l);
-    else if (strcmp(what, "pack") == 0)
+    else if (strcmp(what, "pack") == 0 || strcmp(what, "blocks") == 0)
         pack(s, b, l);
     else if (strcmp(what, "inject") == 0)
         inject(s, b, l);

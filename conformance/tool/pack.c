@@ -241,7 +241,7 @@ static void put_stored(bit_writer *w, const uint8_t *data, size_t size, int last
     conf_add(w->out, data, size);
 }
 
-static uint32_t adler(const uint8_t *data, size_t size)
+void conf_adler(uint8_t check[4], const uint8_t *data, size_t size)
 {
     uint32_t a = 1, b = 0;
 
@@ -249,7 +249,8 @@ static uint32_t adler(const uint8_t *data, size_t size)
         a = (a + data[i]) % 65521;
         b = (b + a) % 65521;
     }
-    return b << 16 | a;
+    for (int i = 0; i < 4; i++)
+        check[i] = (uint8_t)((i < 2 ? b : a) >> (i % 2 == 0 ? 8 : 0));
 }
 
 static void put_head(conf_bytes *out, conf_pack_way way, conf_pack_fault fault)
@@ -307,7 +308,6 @@ void conf_pack(conf_bytes *out, const uint8_t *data, size_t size, conf_pack_way 
     bit_writer w = { .out = out };
     conf_bytes other = { NULL, 0, 0 };
     uint8_t check[4];
-    uint32_t sum;
 
     if (fault == CONF_PACK_EMPTY)
         return;
@@ -316,9 +316,8 @@ void conf_pack(conf_bytes *out, const uint8_t *data, size_t size, conf_pack_way 
         conf_add(&other, "\0\0\0\0", 4);
     put_head(out, way, fault);
     put_body(&w, other.data, other.size, way, fault);
-    sum = adler(other.data, other.size) ^ (fault == CONF_PACK_ADLER ? 1u : 0u);
-    for (int i = 0; i < 4; i++)
-        check[i] = (uint8_t)(sum >> (24 - 8 * i));
+    conf_adler(check, other.data, other.size);
+    check[3] ^= fault == CONF_PACK_ADLER;
     conf_add(out, check, fault == CONF_PACK_CUT ? 3 : 4);
     if (fault == CONF_PACK_TRAILING)
         conf_add(out, "", 1);

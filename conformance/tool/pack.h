@@ -41,6 +41,9 @@ void conf_pack(conf_bytes *out, const uint8_t *data, size_t size, conf_pack_way 
 int conf_pack_way_of(const char *name);
 int conf_pack_fault_of(const char *name);
 
+/* Stores the Adler-32 of the data as the last 4 bytes of a zlib stream. */
+void conf_adler(uint8_t check[4], const uint8_t *data, size_t size);
+
 /* Stores n binary32 values as the bytes that mode 1 packs (spec 7.2). */
 void conf_shuffle(uint8_t *to, const float *values, size_t n);
 
