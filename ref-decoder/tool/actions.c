@@ -16,6 +16,8 @@ static int check_free(const char *pattern, uint32_t number)
 {
     char path[TED4_PATH_SIZE];
 
+    if (ted4_output_is_stdout(pattern))
+        return TED4_EXIT_FINE;
     if (ted4_pattern_make(path, pattern, number) != 0)
         return ted4_session_refused(pattern, "name too long");
     if (access(path, F_OK) == 0)
@@ -71,6 +73,8 @@ int ted4_action_check(const ted4_session *s)
 {
     const ted4_settings *const set = s->set;
     const size_t n_files = set->output != NULL ? ted4_session_times(s) : 0;
+    const int is_video = set->render != NULL && ted4_has_suffix(set->render, TED4_VIDEO_SUFFIX);
+    const size_t n_pictures = is_video ? 1 : s->cameras.n;
     int code = check_frames(s);
 
     if (code == TED4_EXIT_FINE)
@@ -79,7 +83,7 @@ int ted4_action_check(const ted4_session *s)
         code = check_up(s);
     if (code == TED4_EXIT_FINE && n_files > 1 && ted4_pattern_count(set->output) == 0)
         code = ted4_session_refused(set->output, "several frames need a %d in the name");
-    if (code == TED4_EXIT_FINE && s->cameras.n > 1 && ted4_pattern_count(set->render) == 0)
+    if (code == TED4_EXIT_FINE && n_pictures > 1 && ted4_pattern_count(set->render) == 0)
         code = ted4_session_refused(set->render, "several cameras need a %d in the name");
     for (size_t i = 0; i < n_files && code == TED4_EXIT_FINE && !set->force; i++) {
         uint32_t number;
@@ -87,7 +91,7 @@ int ted4_action_check(const ted4_session *s)
         ted4_session_time(s, i, &number);
         code = check_free(set->output, number);
     }
-    for (size_t i = 0; i < s->cameras.n && code == TED4_EXIT_FINE && !set->force; i++)
+    for (size_t i = 0; i < n_pictures && code == TED4_EXIT_FINE && !set->force; i++)
         code = check_free(set->render, (uint32_t)i);
     return code;
 }

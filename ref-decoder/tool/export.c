@@ -19,6 +19,8 @@ int ted4_export(const ted4_format *w, const ted4_frame *x, const char *path)
 {
     ted4_output o;
 
+    if (ted4_output_is_stdout(path))
+        return w->write(stdout, x) == 0 && fflush(stdout) == 0 && !ferror(stdout) ? 0 : -1;
     if (ted4_output_open(&o, path) != 0)
         return -1;
     if (w->write(o.file, x) != 0) {

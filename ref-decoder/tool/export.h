@@ -39,7 +39,8 @@ extern const ted4_format *const ted4_formats[];
 /* Returns the format whose suffix path ends in, or NULL if there is none. */
 const ted4_format *ted4_format_find(const char *path);
 
-/* Writes path through a temporary file (output.h). Returns 0, or -1 with errno set. */
+/* Writes path through a temporary file (output.h), or standard output if it is "-". Returns 0, or
+ * -1 with errno set. */
 int ted4_export(const ted4_format *w, const ted4_frame *x, const char *path);
 
 #endif

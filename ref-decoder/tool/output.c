@@ -54,6 +54,11 @@ int ted4_output_close(ted4_output *o)
     return -1;
 }
 
+int ted4_output_is_stdout(const char *path)
+{
+    return strcmp(path, "-") == 0;
+}
+
 int ted4_has_suffix(const char *path, const char *suffix)
 {
     const size_t n = strlen(path), m = strlen(suffix);

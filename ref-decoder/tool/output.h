@@ -23,6 +23,9 @@ int ted4_output_close(ted4_output *o);
 /* Closes and removes the temporary file. errno is preserved. */
 void ted4_output_cancel(ted4_output *o);
 
+/* Returns 1 if path is "-", which stands for standard output. */
+int ted4_output_is_stdout(const char *path);
+
 /* Returns 1 if path ends in suffix, in letters of either case, with something before it. */
 int ted4_has_suffix(const char *path, const char *suffix);
 

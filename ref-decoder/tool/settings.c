@@ -7,6 +7,7 @@
 #include <stdio.h>
 
 #include "cli.h"
+#include "output.h"
 
 static int refuse(const char *options, const char *why)
 {
@@ -76,12 +77,28 @@ int ted4_settings_only_check(const ted4_settings *s)
     return s->test || (s->output == NULL && s->render == NULL && !s->hash && !s->trace);
 }
 
-int ted4_settings_check(const ted4_settings *s)
+/* Standard output holds one thing. */
+static int check_stdout(const ted4_settings *s)
 {
-    const int code = check_needs(s);
+    const int uses = s->output != NULL && ted4_output_is_stdout(s->output);
 
+    if (s->stdout_format != NULL && !uses)
+        return refuse("--format", "only with -o -; a name says its format");
+    if (uses && (s->json || s->hash || s->trace))
+        return refuse("-o -", "goes without --json, --hash and --trace, which print as well");
+    return 0;
+}
+
+int ted4_settings_check(ted4_settings *s)
+{
+    int code = check_needs(s);
+
+    if (code == 0)
+        code = check_stdout(s);
     if (code != 0)
         return code;
+    if (s->stdout_format != NULL)
+        s->format = s->stdout_format;
     if (s->output != NULL && s->sh_degree >= 0 && s->format->max_sh_degree < s->sh_degree)
         return refuse_degree(s);
     return check_conflicts(s);

@@ -6,12 +6,16 @@
 #include "export.h"
 #include "times.h"
 
+/* The end of a name of --render that asks for one video in place of pictures. */
+#define TED4_VIDEO_SUFFIX ".mp4"
+
 typedef struct {
     const char *input;
-    const char *output, *render; /* patterns; NULL: not requested */
-    const char *cameras, *path;  /* file names, or "file"; NULL: not requested */
-    int orbit, views;            /* numbers of pictures; 0: not given */
-    const ted4_format *format;   /* of output */
+    const char *output, *render;      /* patterns; NULL: not requested */
+    const char *cameras, *path;       /* file names, or "file"; NULL: not requested */
+    int orbit, views;                 /* numbers of pictures; 0: not given */
+    const ted4_format *format;        /* of output */
+    const ted4_format *stdout_format; /* --format; NULL: not given */
     ted4_range range;
     ted4_time time;
     int has_range, has_time;
@@ -29,8 +33,9 @@ typedef struct {
 /* Returns 1 if nothing is to be printed or written: the files are only to be checked. */
 int ted4_settings_only_check(const ted4_settings *s);
 
-/* Checks that no option would be without effect beside the others, before the file is read.
- * Returns 0, or an exit code (cli.h) after one line on stderr. */
-int ted4_settings_check(const ted4_settings *s);
+/* Checks that no option would be without effect beside the others, before the file is read, and
+ * settles the format of standard output. Returns 0, or an exit code (cli.h) after one line on
+ * stderr. */
+int ted4_settings_check(ted4_settings *s);
 
 #endif

@@ -19,6 +19,7 @@
 
 enum {
     OPT_OUTPUT,
+    OPT_FORMAT,
     OPT_FRAMES,
     OPT_TIME,
     OPT_CENTRE,
@@ -52,7 +53,8 @@ enum { MAX_VIEWS = 1000000 };
 static const ted4_argument OPTIONS[N_OPTIONS] = {
     [OPT_OUTPUT] = { 'o', "output", "FILE",
                      "write Gaussians, one file per frame; the name ends in a format below and may "
-                     "hold one %d" },
+                     "hold one %d; - is standard output" },
+    [OPT_FORMAT] = { 0, "format", "NAME", "format of -o -: ply (default), splat, glb or raw" },
     [OPT_FRAMES] = { 0, "frames", "A:B:STEP",
                      "frames A to B - 1 by STEP; parts may be missing; A alone: that frame. "
                      "Default: all" },
@@ -74,8 +76,10 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
                        "also write Gaussians whose opacity is below 1/255. Default where the name "
                        "holds a %d, so that all files of a sequence have the same Gaussians" },
     [OPT_DROP_FAINT] = { 0, "drop-faint", NULL, "leave them out. Default for a single file" },
-    [OPT_RENDER] = { 0, "render", "FILE.png",
-                     "draw what --camera, --orbit or --path sees; the name may hold one %d" },
+    [OPT_RENDER] = { 0, "render", "FILE",
+                     "draw what --camera, --orbit or --path sees as FILE.png, whose name may hold "
+                     "one "
+                     "%d, or as a video FILE.mp4, with the program ffmpeg" },
     [OPT_CAMERA] = { 0, "camera", "FILE.json",
                      "list of {width, height, fx, fy, cx, cy, R[9], t[3], frame or time}, a "
                      "transforms_*.json, or the word file: the cameras of FILE.ted4" },
@@ -240,13 +244,39 @@ static int set_time(ted4_settings *s, const char *value)
         "seconds, as 1.5s, or 0 to 1, as 0.25 or 7/30; at most 7 digits after a point");
 }
 
+static int set_render(ted4_settings *s, const char *value)
+{
+    s->render = value;
+    if (ted4_has_suffix(value, TED4_VIDEO_SUFFIX))
+        return ted4_pattern_count(value) == 0
+                   ? 0
+                   : bad_value("render", value, "a name without % for a video");
+    return ted4_has_suffix(value, ".png")
+               ? check_pattern("render", value)
+               : bad_value("render", value, "a name that ends in .png or .mp4");
+}
+
+static int set_output(ted4_settings *s, const char *value)
+{
+    s->output = value;
+    s->format = ted4_output_is_stdout(value) ? &ted4_format_ply : ted4_format_find(value);
+    return s->format == NULL ? bad_format(value) : check_pattern("output", value);
+}
+
+static int set_format(ted4_settings *s, const char *value)
+{
+    char name[16];
+
+    snprintf(name, sizeof name, "x.%s", value);
+    s->stdout_format = ted4_format_find(name);
+    return s->stdout_format != NULL ? 0 : bad_value("format", value, "ply, splat, glb or raw");
+}
+
 static int set_option(ted4_settings *s, int option, const char *value)
 {
     switch (option) {
-    case OPT_OUTPUT:
-        s->output = value;
-        s->format = ted4_format_find(value);
-        return s->format == NULL ? bad_format(value) : check_pattern("output", value);
+    case OPT_OUTPUT: return set_output(s, value);
+    case OPT_FORMAT: return set_format(s, value);
     case OPT_FRAMES:
         s->has_range = 1;
         return ted4_range_parse(value, &s->range) == 0
@@ -261,11 +291,7 @@ static int set_option(ted4_settings *s, int option, const char *value)
                    : bad_value("camera-centre", value, "three numbers X,Y,Z");
     case OPT_SH_DEGREE: return set_number("sh-degree", value, TED4_SH_MAX_DEGREE, &s->sh_degree);
     case OPT_UP: return set_up(s, value);
-    case OPT_RENDER:
-        s->render = value;
-        return ted4_has_suffix(value, ".png")
-                   ? check_pattern("render", value)
-                   : bad_value("render", value, "a name that ends in .png");
+    case OPT_RENDER: return set_render(s, value);
     case OPT_CAMERA: s->cameras = value; return 0;
     case OPT_ORBIT: return set_count("orbit", value, &s->orbit);
     case OPT_PATH: s->path = value; return 0;

@@ -101,7 +101,8 @@ static void test_usage(void **state)
         { "v1.ted4 --render a.png --camera nope.json", "nope.json: No such file or directory" },
         /* What would have no effect. */
         { "v1.ted4 --render a.png --camera x.json --frames 0", "--frames: only with -o or --hash" },
-        { "v1.ted4 --render a.jpg --camera x.json", "--render: bad value a.jpg; expected a name" },
+        { "v1.ted4 --render a.jpg --camera x.json",
+          "--render: bad value a.jpg; expected a name that ends in .png or .mp4" },
         { "v1.ted4 --time 0", "--time: only with -o, --hash or --render" },
         { "v1.ted4 --test --frames 0", "--frames: only with -o or --hash" },
         { "v1.ted4 --keep-all", "--keep-all: only with -o" },

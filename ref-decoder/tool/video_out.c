@@ -1,0 +1,113 @@
+/* video_out.c - see video_out.h.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "video_out.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <inttypes.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+/* Exit status of a child process that could not become ffmpeg. */
+enum { NO_FFMPEG = 127 };
+
+/* Players want even sizes and colours at half the resolution. */
+static const char FILTER[] = "pad=ceil(iw/2)*2:ceil(ih/2)*2,format=yuv420p";
+
+/* Runs in the child process and never returns. */
+static void become_ffmpeg(const char *size, const char *rate, const char *to, int pictures,
+                          int messages)
+{
+    const int none = open("/dev/null", O_WRONLY);
+
+    if (none >= 0 && dup2(pictures, 0) >= 0 && dup2(none, 1) >= 0 && dup2(messages, 2) >= 0)
+        execlp("ffmpeg", "ffmpeg", "-hide_banner", "-v", "repeat+error", "-f", "rawvideo",
+               "-pix_fmt", "rgb24", "-s", size, "-r", rate, "-i", "pipe:0", "-vf", FILTER, "-flags",
+               "+bitexact", "-fflags", "+bitexact", "-movflags", "+faststart", "-f", "mp4", "-y",
+               to, (char *)NULL);
+    _exit(NO_FFMPEG);
+}
+
+int ted4_video_out_open(ted4_video_out *v, const char *path, int width, int height,
+                        uint32_t rate_num, uint32_t rate_den, char *why, size_t why_size)
+{
+    char size[32], rate[32], to[TED4_PATH_SIZE + 8];
+    int ends[2];
+
+    snprintf(size, sizeof size, "%dx%d", width, height);
+    snprintf(rate, sizeof rate, "%" PRIu32 "/%" PRIu32, rate_num, rate_den);
+    v->broken = 0;
+    v->bytes = (size_t)width * (size_t)height * 3;
+    if (snprintf(v->path, sizeof v->path, "%s", path) >= (int)sizeof v->path - 32) {
+        snprintf(why, why_size, "name too long");
+        return -1;
+    }
+    snprintf(v->temporary, sizeof v->temporary, "%s.%ld.part", path, (long)getpid());
+    /* "file:": no name is taken for an option or a protocol. */
+    snprintf(to, sizeof to, "file:%s", v->temporary);
+    v->messages = tmpfile();
+    if (v->messages == NULL || pipe(ends) != 0) {
+        snprintf(why, why_size, "%s", strerror(errno));
+        if (v->messages != NULL)
+            fclose(v->messages);
+        return -1;
+    }
+    (void)fcntl(ends[1], F_SETFD, FD_CLOEXEC);
+    v->child = fork();
+    if (v->child == 0)
+        become_ffmpeg(size, rate, to, ends[0], fileno(v->messages));
+    close(ends[0]);
+    v->pipe = ends[1];
+    return 0;
+}
+
+int ted4_video_out_write(ted4_video_out *v, const uint8_t *rgb)
+{
+    for (size_t done = 0; done < v->bytes;) {
+        const ssize_t n = write(v->pipe, rgb + done, v->bytes - done);
+
+        if (n < 0 && errno != EINTR) {
+            v->broken = 1;
+            return -1;
+        }
+        done += n > 0 ? (size_t)n : 0;
+    }
+    return 0;
+}
+
+/* Reads the first line of the messages, without characters that are not text. */
+static void first_words(FILE *messages, char *text, size_t size)
+{
+    size_t n = 0;
+
+    rewind(messages);
+    for (int c; n + 1 < size && (c = getc(messages)) != EOF && c != '\n';)
+        if (c >= ' ' && c != 127)
+            text[n++] = (char)c;
+    text[n] = '\0';
+}
+
+int ted4_video_out_close(ted4_video_out *v, int keep, char *why, size_t why_size)
+{
+    char words[200];
+    int status = -1, bad;
+
+    close(v->pipe);
+    while (v->child > 0 && waitpid(v->child, &status, 0) < 0 && errno == EINTR)
+        ;
+    first_words(v->messages, words, sizeof words);
+    fclose(v->messages);
+    bad = v->broken || v->child <= 0 || !WIFEXITED(status) || WEXITSTATUS(status) != 0;
+    if (bad && v->child > 0 && WIFEXITED(status) && WEXITSTATUS(status) == NO_FFMPEG)
+        snprintf(why, why_size, "videos need the program ffmpeg, which cannot be started");
+    else if (bad)
+        snprintf(why, why_size, "ffmpeg failed%s%s", words[0] != '\0' ? ": " : "", words);
+    if (!bad && keep && rename(v->temporary, v->path) != 0) {
+        snprintf(why, why_size, "%s", strerror(errno));
+        bad = 1;
+    }
+    if (bad || !keep)
+        remove(v->temporary);
+    return bad ? -1 : 0;
+}

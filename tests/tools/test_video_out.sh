@@ -1,0 +1,79 @@
+#!/bin/sh
+# test_video_out.sh - ted4dec --render FILE.mp4 and -o -: what ffmpeg is asked for and given, what
+# is said when it is missing or fails, and that no half of a file stays; one time on standard
+# output. Speaks as cmocka programs do; run by `make test` from the project's root.
+# SPDX-License-Identifier: BSD-2-Clause
+set -u
+export LC_ALL=C
+. tests/support/speak.sh
+need video_out ted4dec
+equal() { if [ "$2" = "$3" ]; then ok "$1"; else fail "$1" "$2, expected $3"; fi; }
+dec=$TED4_BUILD/ted4dec
+vector=conformance/vectors/worked/WRK-annex-b2.ted4
+camera() { printf '{"width":%d,"height":3,"fx":4,"fy":4,"cx":2,"cy":1,"R":[1,0,0,0,1,0,0,0,1],
+    "t":[0,0,%d],"time":%s}' "$1" "$2" "$3"; }
+echo "[$(camera 5 4 0), $(camera 5 5 1)]" >"$out/two.json"
+echo "[$(camera 5 4 0), $(camera 6 5 1)]" >"$out/mixed.json"
+
+# An ffmpeg that keeps what it gets; FAIL=1: that fails; FAIL=2: that ends early as if all was well.
+mkdir "$out/bin"
+cat >"$out/bin/ffmpeg" <<'END'
+#!/bin/sh
+echo "$*" >"$KEEP/words"
+for last; do :; done
+[ "$FAIL" = 1 ] && { echo 'half' >"${last#file:}"; echo 'Unknown encoder' >&2; exit 1; }
+[ "$FAIL" = 2 ] && exit 0
+cat >"$KEEP/pictures"
+echo video >"${last#file:}"
+END
+chmod +x "$out/bin/ffmpeg"
+KEEP=$out FAIL=0
+export KEEP FAIL
+path=$PATH
+PATH=$out/bin:$PATH
+"$dec" "$vector" --render "$out/a.mp4" --camera "$out/two.json"
+equal complete "$(cat "$out/a.mp4")" video
+check words "$out/words" "-f rawvideo -pix_fmt rgb24 -s 5x3 -r " " -i pipe:0" \
+    "-f mp4 -y file:$out/a.mp4."
+"$dec" "$vector" --render "$out/p%d.png" --camera "$out/two.json" -q
+equal all_pictures "$(wc -c <"$out/pictures" | tr -d ' ')" 90
+expect exists 3 'a.mp4: exists; -f overwrites' "$dec" "$vector" --render "$out/a.mp4" \
+    --camera "$out/two.json"
+expect mixed 3 'the cameras differ in size' "$dec" "$vector" --render "$out/b.mp4" \
+    --camera "$out/mixed.json"
+expect percent 3 'bad value b%d.mp4; expected a name without %' "$dec" "$vector" --render b%d.mp4 \
+    --camera "$out/two.json"
+FAIL=1
+expect fails 3 'b.mp4: ffmpeg failed: Unknown encoder' "$dec" "$vector" --render "$out/b.mp4" \
+    --camera "$out/two.json"
+FAIL=2
+expect early 3 'b.mp4: ' "$dec" "$vector" --render "$out/b.mp4" --path "$out/two.json" --views 9000
+mkdir "$out/none"
+PATH=$path
+expect missing 3 'videos need the program ffmpeg' env PATH="$out/none" "$dec" "$vector" \
+    --render "$out/b.mp4" --camera "$out/two.json"
+equal nothing_left "$(ls "$out" | grep -c '^b.mp4')" 0
+if command -v ffmpeg >/dev/null; then
+    "$dec" "$vector" --render "$out/real.mp4" --path "$out/two.json" --views 12 -q
+    ffmpeg -v error -i "$out/real.mp4" -f rawvideo -pix_fmt rgb24 -y "$out/back" 2>"$out/err"
+    equal real "$(wc -c <"$out/back" | tr -d ' ')" $((12 * 6 * 4 * 3))
+else
+    skip real "there is no ffmpeg"
+fi
+
+# Standard output holds one file, in a format that is named.
+"$dec" "$vector" -o "$out/one.ply" --time 0 -q
+"$dec" "$vector" -o - --time 0 -q >"$out/two.ply"
+cmp -s "$out/one.ply" "$out/two.ply" && ok stdout || fail stdout "differs"
+"$dec" "$vector" -o "$out/one.raw" --time 0 -q --keep-all
+"$dec" "$vector" -o - --format RAW --time 0 -q --keep-all >"$out/two.raw"
+cmp -s "$out/one.raw" "$out/two.raw" && ok stdout_raw || fail stdout_raw "differs"
+expect several 3 'several frames need' "$dec" "$vector" -o -
+expect twice 3 'o -: goes without --json' "$dec" "$vector" -o - --time 0 --json
+expect format 3 'only with -o -' "$dec" "$vector" -o "$out/x.ply" --time 0 --format ply
+expect no_format 3 'bad value out; expected ply, splat' "$dec" "$vector" -o - --time 0 --format out
+if [ -e /dev/full ]; then
+    "$dec" "$vector" -o - --time 0 -q >/dev/full 2>"$out/err"
+    equal full "$? $(cut -c 1-11 "$out/err" | head -n 1)" "3 ted4dec: -:"
+fi
+exit $bad
