@@ -6,7 +6,7 @@
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 . tests/support/speak.sh
-need pages ted4dec ted4info ted4enc ted4eval ted4edit ted4conf ted4scene
+need pages ted4dec ted4info ted4enc ted4eval ted4edit ted4conf ted4scene ted4tolerance
 [ -d "$TED4_BUILD/man" ] || { skip pages "TED4_BUILD has no man (make man)"; exit 0; }
 man=$TED4_BUILD/man completion=$TED4_BUILD/completion
 vector=conformance/vectors/content/CNT-pop-0.002.ted4
@@ -22,20 +22,27 @@ runs() {
     if "$@" >"$out/said" 2>&1; then ok "$name"; else fail "$name" "$(cat "$out/said")"; fi
 }
 
-# options PAGE COMMAND...: those of the page and of completion in bash are those of --help.
-options() {
+# page_options PAGE COMMAND...: those of the page are those of --help.
+page_options() {
     page=$1; shift
     "$TED4_BUILD/$@" --help | sed -n 's/^  \(-., \|    \)--\([a-z0-9-]*\).*/\2/p' |
         sort >"$out/wanted"
     [ -s "$out/wanted" ] || fail "$page" "the help text has no option"
     sed -n 's/^\.It .*Fl -\([a-z0-9-]*\).*/\1/p' "$man/$page.1" | sort >"$out/found"
     same "${page}_page" "$out/wanted" "$out/found"
+}
+
+# options PAGE COMMAND...: those of completion in bash too.
+options() {
+    page_options "$@"
+    shift
     awk -v p="\"$*\")" '$1 " " $2 == p || $1 == p { take = 1 } take && /options=/ {
         gsub(/.*options=|\047/, ""); print; exit }' "$completion/bash/ted4dec" | tr ' ' '\n' |
         sed -n 's/^--//p' | sort >"$out/found"
     same "${page}_bash" "$out/wanted" "$out/found"
 }
 for p in ted4dec ted4info ted4enc ted4eval ted4edit ted4scene; do options $p $p; done
+page_options ted4tolerance ted4tolerance
 for s in $subcommands; do options ted4conf-$s ted4conf $s; done
 echo $subcommands | tr ' ' '\n' >"$out/wanted"
 sed -n 's/^\.It Cm //p' "$man/ted4conf.1" >"$out/found"

@@ -6,20 +6,21 @@
 
 enum { COLUMNS = 78 };
 
-/* Characters that need an escape, which has up to three characters more. */
+/* Characters that would be instructions or typographic signs, but for an escape. */
 static const char signs[] = "\\-'`^~\"";
 
-/* The most columns that a word takes in the source. */
-static size_t width(const char *word, size_t n)
+/* Returns a bound of the bytes that are written for a word of n bytes. */
+static size_t most_bytes(const char *word, size_t n)
 {
-    size_t columns = n;
+    enum { ESCAPE = 3 }; /* bytes of an escape beyond the first one */
+    size_t bytes = n;
 
     for (size_t i = 0; i < n; i++)
-        columns += strchr(signs, word[i]) != NULL ? 3 : 0;
-    return columns;
+        bytes += strchr(signs, word[i]) != NULL ? ESCAPE : 0;
+    return bytes;
 }
 
-/* Writes one character. Without an escape, some would be instructions or typographic signs. */
+/* Writes one character, with an escape where it needs one. */
 static void put(FILE *f, char c, int at_start)
 {
     static const char *const names[] = {
@@ -75,7 +76,9 @@ void ted4_mdoc_text(FILE *f, const char *text, size_t n)
 
         if (length > (size_t)(end - text))
             length = (size_t)(end - text);
-        if (column > 0 && column + 1 + width(text, length) > COLUMNS) {
+        const size_t bytes = most_bytes(text, length);
+
+        if (column > 0 && column + 1 + bytes > COLUMNS) {
             fputc('\n', f);
             column = 0;
         } else if (column > 0) {
@@ -83,7 +86,7 @@ void ted4_mdoc_text(FILE *f, const char *text, size_t n)
             column++;
         }
         prose(f, text, length, column == 0);
-        column += width(text, length);
+        column += bytes;
         if (ends_sentence(text, length)) {
             fputc('\n', f);
             column = 0;

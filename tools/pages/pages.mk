@@ -40,5 +40,5 @@ install-pages: man
 	install -m 644 tools/ted4.xml $(SHARE)/mime/packages
 	install -m 644 tools/ted4.magic $(SHARE)/ted4
 
-$B/tests/tools/test_manual: | man
+$B/tests/tools/test_manual: | man $(PROGS) $B/ted4conf $B/ted4tolerance
 .PHONY: man install-pages
