@@ -46,10 +46,10 @@ PAGE_LICENCE = $(NPM)/node_modules/playcanvas/LICENSE
 PAGE_SRC = $(wildcard player/page/*.js player/src/*.js player/adapters/*.js)
 ADAPTERS = $(patsubst %,$W/adapters/%,index.html playcanvas.js spark.js supersplat.js)
 player: $(addprefix $W/,index.html style.css player.js ted4.wasm)
-$(NPM)/installed: player/package.json player/package-lock.json
+$(NPM)/installed: player/package-lock.json
 	@mkdir -p $(@D)
-	cp $^ $(@D)
-	cd $(@D) && npm ci --ignore-scripts --no-audit --no-fund --loglevel=error
+	cp $< player/package.json $(@D)
+	cd $(@D) && npm ci --prefer-offline --ignore-scripts --no-audit --no-fund --loglevel=error
 	@touch $@
 $W/index.html $W/style.css: $W/%: player/page/%
 	@mkdir -p $(@D)
@@ -81,4 +81,6 @@ $T/occluder.ted4: | $B/ted4scene $B/ted4enc
 	@mkdir -p $T
 	$B/ted4scene occluder -o $T/scene -f
 	$B/ted4enc $T/scene -o $@ --preset draft --iterations 800,400 --seed 1 -f -q
-.PHONY: test-player
+player-speed: player
+	TED4_PLAYER=$(abspath $W) node player/test/speed.mjs $(FILE)
+.PHONY: test-player player-speed

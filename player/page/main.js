@@ -48,10 +48,11 @@ function showOpened() {
   timeline.reset();
 }
 
-async function open(name, reading) {
+// since: when the file was asked for.
+async function open(name, reading, since) {
   showMessage("");
   try {
-    await player.open(new Uint8Array(await reading), name);
+    await player.open(new Uint8Array(await reading), name, since);
     showOpened();
   } catch (error) {
     showMessage(explain(name, error));
@@ -69,7 +70,9 @@ async function showSizes() {
 }
 
 function bindFiles() {
-  const openFile = (file) => { if (file) open(file.name, file.arrayBuffer()); };
+  const openFile = (file) => {
+    if (file) open(file.name, file.arrayBuffer(), performance.now());
+  };
   at("file").addEventListener("change", () => openFile(at("file").files[0]));
   addEventListener("dragover", (e) => {
     e.preventDefault();
@@ -103,12 +106,12 @@ function bindView() {
 
 // Once a second, the statistics of that second.
 function countPictures() {
-  let before = 0;
+  let before = { ...player.statistics };
   setInterval(() => {
     if (player.file === null) return;
-    const { drawn } = player.statistics;
-    showStatistics(player.file, player.statistics, drawn - before);
-    before = drawn;
+    const { evaluated, drawn } = player.statistics;
+    showStatistics(player, evaluated - before.evaluated, drawn - before.drawn);
+    before = { evaluated, drawn };
   }, 1000);
 }
 
@@ -125,7 +128,7 @@ function frame() {
 requestAnimationFrame(frame);
 
 const address = new URLSearchParams(location.search).get("file");
-if (embedded.scene) open(embedded.name, embedded.scene);
-else if (address) open(address.split("/").pop(), read(address));
+if (embedded.scene) open(embedded.name, embedded.scene, 0);
+else if (address) open(address.split("/").pop(), read(address), 0);
 
 globalThis.ted4Player = player; // for scripts of the page

@@ -53,13 +53,16 @@ export function showElements(rows) {
     [`${chunk} ${element}`, count(bytes)]));
 }
 
-export function showStatistics({ milliseconds, info }, { evaluate, firstPicture }, perSecond) {
+// player, and how many times were evaluated and pictures drawn in the last second.
+export function showStatistics({ file, statistics, sorting }, evaluated, drawn) {
   terms("statistics", [
-    ["Decoding", `${milliseconds.toFixed(0)} ms`],
-    ["First picture", `${firstPicture.toFixed(0)} ms`],
-    ["Evaluating a time", `${evaluate.toFixed(1)} ms`],
-    ["Gaussians", count(info.gaussians)],
-    ["Pictures a second", perSecond.toFixed(0)],
+    ["Decoding", `${file.milliseconds.toFixed(0)} ms`],
+    ["First picture", `${statistics.firstPicture.toFixed(0)} ms`],
+    ["Evaluating a time", `${statistics.evaluate.toFixed(1)} ms`],
+    ["Sorting", `${sorting.toFixed(1)} ms`],
+    ["Gaussians", count(file.info.gaussians)],
+    ["Times a second", count(evaluated)],
+    ["Pictures a second", count(drawn)],
   ]);
 }
 

@@ -16,7 +16,8 @@ export class Player {
   clock = new Clock();
   navigation;
   file = null; // of the open file: { name, bytes, info, chunks, meta, cameras, milliseconds }
-  statistics = { evaluate: 0, drawn: 0, firstPicture: 0 };
+  // Milliseconds of the last evaluation, and until the first picture; counts from the beginning.
+  statistics = { evaluate: 0, firstPicture: 0, evaluated: 0, drawn: 0 };
   #canvas;
   #view = null;
   #client;
@@ -25,7 +26,6 @@ export class Player {
   #shown = null; // what the Gaussians on the screen were evaluated for
   #pending = null; // the evaluation under way
   #pose = null; // the camera that the view was given
-  #opened = 0;
   #last = 0;
   #failed;
 
@@ -44,40 +44,28 @@ export class Player {
     this.#view.onFrame((now) => this.#tick(now), () => { this.statistics.drawn++; });
   }
 
-  // Shows a file from its start. Rejects with Ted4Error; then what was there before stays.
-  async open(bytes, name) {
-    const opened = performance.now();
+  // Shows a file from its start. since: when it was asked for. Rejects with Ted4Error; then what
+  // was there before stays.
+  async open(bytes, name, since = performance.now()) {
     await this.#ready;
     const scene = await this.#client.open(bytes);
-    const chunks = chunksOf(bytes);
-    const first = await scene.gaussians(0, 1, [0, 0, 0]);
-    await this.#pending;
+    const chunks = chunksOf(bytes), cameras = camerasOf(chunks);
+    const up = cameras.up ?? UP;
+    const isSeen = cameras.cameras.length + cameras.path.length > 0;
+    const start = isSeen ? null : startCamera(await scene.gaussians(0, 1), up);
     this.#scene?.close();
     this.#scene = scene;
-    this.#opened = opened;
+    this.#shown = null;
     this.statistics.firstPicture = 0;
     this.file = {
-      name, bytes, info: scene.info, chunks: bytesByType(chunks), meta: metaOf(chunks),
-      cameras: camerasOf(chunks), milliseconds: scene.milliseconds,
+      name, bytes, since, info: scene.info, chunks: bytesByType(chunks), meta: metaOf(chunks),
+      cameras, milliseconds: scene.milliseconds,
     };
     this.clock.reset(scene.info.frames, scene.info.rate);
-    this.#view.reset(first.n);
+    this.#view.reset(scene.info.gaussians);
     this.#view.setBackground(scene.info.background);
-    this.#start(first);
-  }
-
-  // From the file's first camera, or from where most of the scene can be seen.
-  #start(first) {
-    const { cameras } = this.file;
-    const start = startCamera(first, cameras.up ?? UP);
-    this.navigation.up = cameras.up ?? UP;
-    this.navigation.camera = start.camera;
-    this.navigation.distance = start.distance;
-    this.#shown = null;
-    if (this.cameras.length > 0) {
-      this.useCamera(0);
-      this.navigation.distance = depthAhead(this.cameras[0], first);
-    }
+    Object.assign(this.navigation, { up, ...start });
+    if (isSeen) this.useCamera(0);
   }
 
   // The file's cameras, then those of its path.
@@ -112,7 +100,7 @@ export class Player {
     this.#followCamera();
     this.#evaluate();
     if (this.statistics.firstPicture === 0 && this.isSettled)
-      this.statistics.firstPicture = now - this.#opened;
+      this.statistics.firstPicture = now - this.file.since;
   }
 
   #followCamera() {
@@ -140,10 +128,34 @@ export class Player {
     const wanted = this.#wanted(), scene = this.#scene;
     if (this.#shown === wanted.key) return;
     this.#pending = scene.gaussians(wanted.num, wanted.den, wanted.centre).then((g) => {
-      this.#shown = wanted.key;
-      this.statistics.evaluate = g.milliseconds;
-      this.#view.setGaussians(g);
-    }).catch(this.#failed).finally(() => { this.#pending = null; });
+      if (scene === this.#scene) this.#show(g, wanted.key);
+    }).catch((error) => {
+      this.#shown = wanted.key; // and is not tried again
+      this.#failed(error);
+    }).finally(() => {
+      this.#pending = null;
+      this.#evaluate();
+    });
+  }
+
+  // The first Gaussians of a file that lists cameras tell where the pivot is.
+  #show(g, key) {
+    if (this.#shown === null && this.cameras.length > 0)
+      this.navigation.distance = depthAhead(this.navigation.camera, g);
+    this.#shown = key;
+    this.statistics.evaluate = g.milliseconds;
+    this.statistics.evaluated++;
+    this.#view.setGaussians(g);
+  }
+
+  // The Gaussians of a time as seen from a place (ClientScene.gaussians). The screen stays.
+  gaussians(num, den, centre) {
+    return this.#scene.gaussians(num, den, centre);
+  }
+
+  // Milliseconds of the last sort.
+  get sorting() {
+    return this.#view.sorting;
   }
 
   // Whether the wanted time and camera are on the screen.

@@ -20,6 +20,7 @@ export class View {
   #projection = new Mat4();
   #frames = 0; // still to be drawn
   #isSorted = true;
+  sorting = 0; // milliseconds of the last sort
 
   static async create(canvas) {
     const view = new View();
@@ -47,7 +48,10 @@ export class View {
     this.#app.systems.gsplat.on("frame:ready", (camera, layer, isReady) => {
       this.#isSorted = isReady;
     });
-    this.#app.scene.on("gsplat:sorted", () => this.#change());
+    this.#app.scene.on("gsplat:sorted", (milliseconds) => {
+      this.sorting = milliseconds;
+      this.#change();
+    });
     this.#app.on("postrender", () => { this.#frames--; });
     this.#app.start();
   }

@@ -1,0 +1,52 @@
+// speed.mjs FILE.ted4 - how fast the player is in headless Chromium: one JSON object. Drawing is
+// left aside as far as it goes, because it is done in software here: pictures have few pixels, and
+// what is measured by the second stays off the screen.
+// SPDX-License-Identifier: BSD-2-Clause
+import { basename, dirname } from "node:path";
+import { Browser } from "./browser.mjs";
+import { serve } from "./server.mjs";
+
+const [FILE, PLAYER] = [process.argv[2], process.env.TED4_PLAYER];
+const WIDTH = 64, HEIGHT = 36, TIMES = 100, OPENINGS = 5;
+
+// New times and new cameras, one after the other, as the page gets them from its worker.
+const EVALUATE = `(async () => {
+  const inWorker = [], inAll = [];
+  const start = performance.now();
+  for (let i = 0; i < ${TIMES}; i++) {
+    const asked = performance.now();
+    const g = await ted4Player.gaussians(i * 137 % 1000, 1000, [0.001 * i, 0.1, 0.2]);
+    inWorker.push(g.milliseconds);
+    inAll.push(performance.now() - asked);
+  }
+  const perSecond = 1000 * ${TIMES} / (performance.now() - start);
+  const parts = (times) => {
+    times.sort((a, b) => a - b);
+    return { least: times[0], median: times[times.length >> 1], most: times.at(-1) };
+  };
+  return { perSecond, inWorker: parts(inWorker), inAll: parts(inAll) };
+})()`;
+
+async function opened(browser, url) {
+  const page = await browser.page(WIDTH, HEIGHT);
+  await page.open(url);
+  await page.until("globalThis.ted4Player?.statistics.firstPicture > 0");
+  await page.until("ted4Player.isSettled");
+  return { page, ...await page.evaluate(`({ firstPicture: ted4Player.statistics.firstPicture,
+    decode: ted4Player.file.milliseconds, sort: ted4Player.sorting,
+    gaussians: ted4Player.file.info.gaussians, anchors: ted4Player.file.info.anchors })`) };
+}
+
+const server = await serve(PLAYER, dirname(FILE)), browser = new Browser();
+const url = `${server.origin}/?file=${basename(FILE)}`, openings = [];
+for (let i = 0; i < OPENINGS; i++) openings.push(await opened(browser, url));
+const { page, anchors, gaussians } = openings.at(-1);
+const values = (key) => openings.map((o) => o[key]).sort((a, b) => a - b);
+const median = (key) => values(key)[OPENINGS >> 1];
+console.log(JSON.stringify({
+  anchors, gaussians, decode: median("decode"), sort: median("sort"),
+  firstPicture: { least: values("firstPicture")[0], median: median("firstPicture") },
+  evaluate: await page.evaluate(EVALUATE),
+}, (key, v) => (typeof v === "number" ? Math.round(10 * v) / 10 : v), 2));
+await browser.close();
+server.close();
