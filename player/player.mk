@@ -80,7 +80,10 @@ test-player: player $(ADAPTERS) $T/occluder.ted4 $B/ted4dec
 $T/occluder.ted4: | $B/ted4scene $B/ted4enc
 	@mkdir -p $T
 	$B/ted4scene occluder -o $T/scene -f
-	$B/ted4enc $T/scene -o $@ --preset draft --iterations 800,400 --seed 1 -f -q
+	$B/ted4enc $T/scene -o $@ --preset draft --iterations 800,400 --seed 1 \
+	    --cameras -f -q
 player-speed: player
 	TED4_PLAYER=$(abspath $W) node player/test/speed.mjs $(FILE)
-.PHONY: test-player player-speed
+deps-test-player: deps-player
+	@$(call INSTALL_DEBIAN,chromium)
+.PHONY: test-player player-speed deps-test-player

@@ -52,7 +52,8 @@ export class Browser {
   async page(width, height) {
     const { targetId } = await this.send("Target.createTarget", { url: "about:blank" });
     const { sessionId } = await this.send("Target.attachToTarget", { targetId, flatten: true });
-    const page = new Page((method, params) => this.send(method, params, sessionId));
+    const page = new Page((method, params) => this.send(method, params, sessionId),
+      () => this.send("Target.closeTarget", { targetId }));
     this.#pages.set(sessionId, page);
     await page.start(width, height);
     return page;
@@ -72,8 +73,9 @@ export class Page {
   errors = []; // uncaught exceptions, and errors on the console
   requests = []; // addresses
 
-  constructor(send) {
+  constructor(send, close) {
     this.#send = send;
+    this.close = close;
   }
 
   async start(width, height) {

@@ -42,6 +42,20 @@ test("a file is opened, and its hash is the one that the decoder prints", async 
   assert.equal(await page.evaluate(`document.getElementById("message").hidden`), true);
 });
 
+test("the page begins at the file's first camera, with its up, and offers the others", async () => {
+  const { up, cameras } = await page.evaluate("ted4Player.file.cameras");
+  assert.deepEqual(up, [0, 0, 1]);
+  assert.deepEqual(await page.evaluate("ted4Player.navigation.camera"), cameras[0]);
+  assert.equal(await page.evaluate(`document.getElementById("cameras").textContent`),
+    `of ${cameras.length}`);
+  await page.evaluate(`(() => {
+    const camera = document.getElementById("camera");
+    camera.value = 2;
+    camera.dispatchEvent(new Event("change"));
+  })()`);
+  assert.deepEqual(await page.evaluate("ted4Player.navigation.camera"), cameras[1]);
+});
+
 test("pictures at three times agree with those of ted4dec --render", async (t) => {
   await showBare();
   const frames = await page.evaluate("ted4Player.clock.frames");

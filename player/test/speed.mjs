@@ -39,7 +39,10 @@ async function opened(browser, url) {
 
 const server = await serve(PLAYER, dirname(FILE)), browser = new Browser();
 const url = `${server.origin}/?file=${basename(FILE)}`, openings = [];
-for (let i = 0; i < OPENINGS; i++) openings.push(await opened(browser, url));
+for (let i = 0; i < OPENINGS; i++) {
+  await openings.at(-1)?.page.close();
+  openings.push(await opened(browser, url));
+}
 const { page, anchors, gaussians } = openings.at(-1);
 const values = (key) => openings.map((o) => o[key]).sort((a, b) => a - b);
 const median = (key) => values(key)[OPENINGS >> 1];
