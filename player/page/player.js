@@ -21,7 +21,8 @@ export class Player {
   #canvas;
   #view = null;
   #client;
-  #ready;
+  #loaded; // the decoder
+  #started = null; // the view
   #scene = null;
   #shown = null; // what the Gaussians on the screen were evaluated for
   #pending = null; // the evaluation under way
@@ -36,7 +37,7 @@ export class Player {
     this.#failed = failed;
     this.navigation = new Navigation(canvas);
     this.#client = new Ted4Client(worker);
-    this.#ready = Promise.all([this.#client.load(wasm), this.#startView()]);
+    this.#loaded = this.#client.load(wasm);
   }
 
   async #startView() {
@@ -47,8 +48,11 @@ export class Player {
   // Shows a file from its start. since: when it was asked for. Rejects with Ted4Error; then what
   // was there before stays.
   async open(bytes, name, since = performance.now()) {
-    await this.#ready;
-    const scene = await this.#client.open(bytes);
+    await this.#loaded;
+    const opening = this.#client.open(bytes);
+    // Starting to draw takes this thread as long as decoding takes the worker.
+    this.#started ??= this.#startView();
+    const [scene] = await Promise.all([opening, this.#started]);
     const chunks = chunksOf(bytes), cameras = camerasOf(chunks);
     const up = cameras.up ?? UP;
     const isSeen = cameras.cameras.length + cameras.path.length > 0;
@@ -62,7 +66,7 @@ export class Player {
       cameras, milliseconds: scene.milliseconds,
     };
     this.clock.reset(scene.info.frames, scene.info.rate);
-    this.#view.reset(scene.info.gaussians);
+    this.#view.clear();
     this.#view.setBackground(scene.info.background);
     Object.assign(this.navigation, { up, ...start });
     if (isSeen) this.useCamera(0);
@@ -88,7 +92,7 @@ export class Player {
   }
 
   setBackground(rgb) {
-    this.#view.setBackground(rgb);
+    this.#view?.setBackground(rgb);
   }
 
   // Before every frame of the display.

@@ -10,7 +10,9 @@ import { createContainer, updateContainer } from "../adapters/playcanvas.js";
 import { centreOf } from "./camera.js";
 
 const DEPTHS = 1e5; // the farthest depth over the nearest
-const FRAMES = 3; // to draw after a change: PlayCanvas takes it in, sorts it in a worker, shows it
+// To be drawn: PlayCanvas takes a change in with a frame, sorts in a worker, and shows the order in
+// the frame after that. One more for what it puts off while it sorts.
+const FRAMES_AFTER_CHANGE = 2, FRAMES_AFTER_SORT = 1;
 
 export class View {
   #app;
@@ -50,7 +52,7 @@ export class View {
     });
     this.#app.scene.on("gsplat:sorted", (milliseconds) => {
       this.sorting = milliseconds;
-      this.#change();
+      this.#frames = Math.max(this.#frames, FRAMES_AFTER_SORT);
     });
     this.#app.on("postrender", () => { this.#frames--; });
     this.#app.start();
@@ -60,27 +62,31 @@ export class View {
   onFrame(changed, drawn) {
     this.#app.on("update", () => {
       changed(performance.now());
-      this.#app.renderNextFrame = this.#frames > 0 || !this.#isSorted;
+      this.#app.renderNextFrame = this.#frames > 0;
     });
     this.#app.on("postrender", drawn);
   }
 
-  // A new scene, of n Gaussians.
-  reset(n) {
+  // Nothing is shown until the next Gaussians.
+  clear() {
     this.#entity?.destroy();
     this.#container?.destroy();
     this.#entity = this.#container = null;
+    this.#isSorted = true;
     this.#change();
-    if (n === 0) return;
+  }
+
+  #create(n) {
     this.#container = createContainer(this.#app.graphicsDevice, n);
     this.#entity = new Entity("gaussians", this.#app);
     this.#entity.addComponent("gsplat", { resource: this.#container });
     this.#app.root.addChild(this.#entity);
   }
 
-  // g: the Gaussians of a time, from a decoder.
+  // g: the Gaussians of a time, from a decoder; as many of them as before, since clear().
   setGaussians(g) {
-    if (this.#container === null) return;
+    if (g.n === 0) return;
+    if (this.#container === null) this.#create(g.n);
     updateContainer(this.#container, g);
     this.#entity.gsplat.workBufferUpdate = WORKBUFFER_UPDATE_ONCE;
     this.#isSorted = false;
@@ -121,6 +127,6 @@ export class View {
   }
 
   #change() {
-    this.#frames = FRAMES;
+    this.#frames = FRAMES_AFTER_CHANGE;
   }
 }

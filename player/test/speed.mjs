@@ -7,7 +7,31 @@ import { Browser } from "./browser.mjs";
 import { serve } from "./server.mjs";
 
 const [FILE, PLAYER] = [process.argv[2], process.env.TED4_PLAYER];
-const WIDTH = 64, HEIGHT = 36, TIMES = 100, OPENINGS = 5;
+const WIDTH = 64, HEIGHT = 36, TIMES = 100, SCRUBS = 20, OPENINGS = 5;
+
+// Of milliseconds.
+const SUMMARY = `(times) => {
+  times.sort((a, b) => a - b);
+  return { least: times[0], median: times[times.length >> 1], most: times.at(-1) };
+}`;
+
+// From the slider to the Gaussians of that time, and until they are sorted and drawn.
+const SCRUB = `(async () => {
+  const time = document.getElementById("time"), evaluated = [], shown = [];
+  const until = async (condition) => {
+    while (!condition()) await new Promise((resolve) => { setTimeout(resolve, 1); });
+    return performance.now();
+  };
+  for (let i = 0; i < ${SCRUBS}; i++) {
+    const before = ted4Player.statistics.evaluated, start = performance.now();
+    time.value = (i * 7.3 + 1.1) % time.max;
+    time.dispatchEvent(new Event("input"));
+    evaluated.push(await until(() => ted4Player.statistics.evaluated > before) - start);
+    shown.push(await until(() => ted4Player.isSettled) - start);
+  }
+  const summary = ${SUMMARY};
+  return { evaluated: summary(evaluated), shown: summary(shown) };
+})()`;
 
 // New times and new cameras, one after the other, as the page gets them from its worker.
 const EVALUATE = `(async () => {
@@ -20,11 +44,8 @@ const EVALUATE = `(async () => {
     inAll.push(performance.now() - asked);
   }
   const perSecond = 1000 * ${TIMES} / (performance.now() - start);
-  const parts = (times) => {
-    times.sort((a, b) => a - b);
-    return { least: times[0], median: times[times.length >> 1], most: times.at(-1) };
-  };
-  return { perSecond, inWorker: parts(inWorker), inAll: parts(inAll) };
+  const summary = ${SUMMARY};
+  return { perSecond, inWorker: summary(inWorker), inAll: summary(inAll) };
 })()`;
 
 async function opened(browser, url) {
@@ -49,7 +70,7 @@ const median = (key) => values(key)[OPENINGS >> 1];
 console.log(JSON.stringify({
   anchors, gaussians, decode: median("decode"), sort: median("sort"),
   firstPicture: { least: values("firstPicture")[0], median: median("firstPicture") },
-  evaluate: await page.evaluate(EVALUATE),
+  evaluate: await page.evaluate(EVALUATE), scrub: await page.evaluate(SCRUB),
 }, (key, v) => (typeof v === "number" ? Math.round(10 * v) / 10 : v), 2));
 await browser.close();
 server.close();
