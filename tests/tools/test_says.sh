@@ -25,6 +25,7 @@ export XDG_CACHE_HOME
 "$enc" "$out/scene" --check --json 2>/dev/null | tr -d '\n' >"$out/json"
 check check_json "$out/json" '{"error":null,"layout":"D-NeRF","train":20,"test":4,"cameras":6,' \
     '"frames":4,"sizes":[[32,24],[32,24]],' '"rate":'
+expect file_rate 0 '(the file will say ' "$enc" "$out/scene" --check
 expect check_json_missing 3 "$out/none: no such folder" "$enc" "$out/none" --check --json
 "$enc" "$out/none" --check --json 2>/dev/null >"$out/json"
 check check_json_error "$out/json" "{\"error\":\"$out/none: no such folder"
