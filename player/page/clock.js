@@ -10,6 +10,7 @@ export class Clock {
   speed = 1;
   isLooping = true;
   isPlaying = false;
+  sought = () => {}; // is called after seek and step
   #position = 0;
   #last = 0;
 
@@ -25,6 +26,7 @@ export class Clock {
 
   seek(position) {
     this.#position = Math.min(Math.max(position, 0), this.frames - 1);
+    this.sought();
   }
 
   play(now) {

@@ -38,6 +38,8 @@ export class Player {
     this.navigation = new Navigation(canvas);
     this.#client = new Ted4Client(worker);
     this.#loaded = this.#client.load(wasm);
+    // Scrubbing does not wait for the next frame of the display.
+    this.clock.sought = () => this.#evaluate();
   }
 
   async #startView() {
@@ -100,9 +102,9 @@ export class Player {
     this.clock.advance(now);
     this.navigation.fly((now - this.#last) / 1000);
     this.#last = now;
+    this.#evaluate();
     if (this.file === null) return;
     this.#followCamera();
-    this.#evaluate();
     if (this.statistics.firstPicture === 0 && this.isSettled)
       this.statistics.firstPicture = now - this.file.since;
   }
@@ -128,7 +130,7 @@ export class Player {
 
   // One evaluation at a time; the next one is for what is wanted then.
   #evaluate() {
-    if (this.#pending !== null) return;
+    if (this.file === null || this.#pending !== null) return;
     const wanted = this.#wanted(), scene = this.#scene;
     if (this.#shown === wanted.key) return;
     this.#pending = scene.gaussians(wanted.num, wanted.den, wanted.centre).then((g) => {
