@@ -135,6 +135,21 @@ export class Page {
     await this.#send("Input.dispatchKeyEvent", { type: "keyUp", key, code });
   }
 
+  async hold(key, code, milliseconds) {
+    await this.#send("Input.dispatchKeyEvent", { type: "keyDown", key, code });
+    await new Promise((resolve) => { setTimeout(resolve, milliseconds); });
+    await this.#send("Input.dispatchKeyEvent", { type: "keyUp", key, code });
+  }
+
+  // Two fingers, from and to [x, y] each.
+  async pinch(from, to) {
+    const touch = (type, points) => this.#send("Input.dispatchTouchEvent",
+      { type, touchPoints: points.map(([x, y], id) => ({ x, y, id })) });
+    await touch("touchStart", from);
+    await touch("touchMove", to);
+    await touch("touchEnd", []);
+  }
+
   async drag(x, y, toX, toY) {
     const event = (type, px, py, buttons) => this.#send("Input.dispatchMouseEvent",
       { type, x: px, y: py, button: "left", buttons, clickCount: 1 });

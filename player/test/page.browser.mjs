@@ -109,14 +109,35 @@ test("the slider scrubs, to times between frames too", async () => {
   assert.match(await page.evaluate(`document.getElementById("frame").textContent`), /^2 /);
 });
 
+const CENTRE = `(({ R, t }) => [0, 1, 2].map((j) =>
+  -(R[j] * t[0] + R[3 + j] * t[1] + R[6 + j] * t[2])))(ted4Player.navigation.camera)`;
+const DISTANCE = "ted4Player.navigation.distance";
+
+async function way(move) {
+  const [x, y, z] = await page.evaluate(CENTRE);
+  await move();
+  const [newX, newY, newZ] = await page.evaluate(CENTRE);
+  return Math.hypot(newX - x, newY - y, newZ - z);
+}
+
 test("dragging orbits about the scene, and the distance stays", async () => {
-  const centre = `(({ R, t }) => [0, 1, 2].map((j) =>
-    -(R[j] * t[0] + R[3 + j] * t[1] + R[6 + j] * t[2])))(ted4Player.navigation.camera)`;
-  const [x, y, z] = await page.evaluate(centre);
-  await page.drag(100, 100, 180, 110);
-  const [newX, newY, newZ] = await page.evaluate(centre);
-  assert.ok(Math.hypot(newX - x, newY - y, newZ - z) > 0.1);
+  const distance = await page.evaluate(DISTANCE);
+  assert.ok(await way(() => page.drag(100, 100, 180, 110)) > 0.1);
+  assert.equal(await page.evaluate(DISTANCE), distance);
   await page.until("ted4Player.isSettled");
+});
+
+test("two fingers that part come nearer", async () => {
+  const distance = await page.evaluate(DISTANCE);
+  await page.pinch([[140, 120], [180, 120]], [[100, 120], [220, 120]]);
+  const ratio = await page.evaluate(DISTANCE) / distance;
+  assert.ok(Math.abs(ratio - 1 / 3) < 0.05, `${ratio}`);
+  await page.until("ted4Player.isSettled");
+});
+
+test("W flies as long as it is held", async () => {
+  assert.ok(await way(() => page.hold("w", "KeyW", 300)) > 0);
+  assert.equal(await way(() => page.until("ted4Player.isSettled")), 0);
 });
 
 test("the question mark opens the help, which Escape closes", async () => {
