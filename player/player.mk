@@ -32,7 +32,7 @@ player-test: $W/ted4.wasm
 player-conformance: $W/ted4.wasm $B/ted4conf
 	TED4_WASM=$(abspath $W/ted4.wasm) $B/ted4conf run --decoder 'node player/test/driver.mjs' \
 	    --memory 0 --once --timeout 60
-DEPS_PLAYER = clang-19 lld-19 nodejs
+DEPS_PLAYER = clang-19 lld-19 nodejs $(if $(shell command -v npm),,npm)
 deps-player: deps
 	@$(call INSTALL_DEBIAN,$(DEPS_PLAYER))
 .PHONY: player-wasm player-test player-conformance deps-player

@@ -12,8 +12,8 @@ echo "1 scene: occluder, ray traced"
 "$bin/ted4scene" occluder -o "$out/scene" -f
 "$bin/ted4enc" --check "$out/scene"
 echo "2 training and encoding: preset draft"
-"$bin/ted4enc" "$out/scene" -o "$out/occluder.ted4" --preset draft --seed 1 -f --json \
-    --log "$out/train.jsonl" >"$out/train.json"
+"$bin/ted4enc" "$out/scene" -o "$out/occluder.ted4" --preset draft --seed 1 \
+    --title "Occluder" --cameras -f --json --log "$out/train.jsonl" >"$out/train.json"
 echo "3 decoding in a fresh process"
 "$bin/ted4dec" "$out/occluder.ted4" --test
 "$bin/ted4info" "$out/occluder.ted4" --budget

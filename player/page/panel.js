@@ -29,7 +29,7 @@ function sceneRows({ bytes, info, meta }) {
     ["File", `${count(bytes.length)} bytes`],
     ["Anchors", `${count(info.anchors)}, ${count(info.moving)} move`],
     ["Gaussians", count(info.gaussians)],
-    ["Frames", `${count(info.frames)}, ${info.rate} a second`],
+    ["Frames", `${count(info.frames)}, ${info.rate} per second`],
     ["Motion", info.motion],
     ["Activation", info.activation ? "yes" : "no"],
     ["Depends on view", info.view],
@@ -61,8 +61,8 @@ export function showStatistics({ file, statistics, sorting }, evaluated, drawn) 
     ["Evaluating a time", `${statistics.evaluate.toFixed(1)} ms`],
     ["Sorting", `${sorting.toFixed(1)} ms`],
     ["Gaussians", count(file.info.gaussians)],
-    ["Times a second", count(evaluated)],
-    ["Pictures a second", count(drawn)],
+    ["Times per second", count(evaluated)],
+    ["Pictures per second", count(drawn)],
   ]);
 }
 
