@@ -1,4 +1,4 @@
-/* test_rate.c - train/rate/*.c: bits against the model in double precision, the noise, the
+/* test_rate.c - the files of train/rate: bits against the model in double precision, the noise, the
  * quantiser, threads, unused lanes, the integer mode, and clamped outputs (annex D.1: sigma clamped
  * from below, steps near 0).
  * SPDX-License-Identifier: BSD-2-Clause */

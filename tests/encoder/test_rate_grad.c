@@ -1,4 +1,4 @@
-/* test_rate_grad.c - every gradient of train/rate/*.c against central differences of the
+/* test_rate_grad.c - every gradient of the files of train/rate against central differences of the
  * double-precision model in rate_ref.h, with residuals held fixed: values, mask logits, weights of
  * hyperprior and slices; at random points and at edge cases.
  * SPDX-License-Identifier: BSD-2-Clause */

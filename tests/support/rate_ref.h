@@ -1,6 +1,6 @@
 /* rate_ref.h - a second implementation of the rate model, in double precision, one anchor at a
  * time, from spec 9.4, 10.1, 10.3 and the head of rate_row.c; and random models to test it on.
- * Shares no arithmetic with train/rate/*.c.
+ * Shares no arithmetic with the files of train/rate.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_RATE_REF_H
 #define TED4_RATE_REF_H
