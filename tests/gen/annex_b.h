@@ -312,10 +312,11 @@ static inline void annex_b_values(FILE *out, const struct scene *s)
     fprintf(out, "\n| anchor | type | step index | q | values k q |\n|---|---|---|---|---|\n");
     for (size_t a = 0; a < (size_t)s->h.n_anchors; a++)
         for (int type = 0; type < TYPES; type++) {
-            const int i = s->step_index[type][a];
-
             if (type_dim(&s->h, type) == 0 || (type == PHI_TYPE && !s->dynamic[a]))
                 continue;
+
+            const int i = s->step_index[type][a];
+
             fprintf(out, "| %zu | %s | %d | %g |", a, name[type], i,
                     (double)(from_bits(s->h.step[type]) * from_bits(STEP[i])));
             for (int c = 0; c < type_dim(&s->h, type); c++) {
