@@ -6,23 +6,25 @@
 
 #include <stdint.h>
 
-/* A bijective mix of 64 bits (two rounds of xor-shift and multiplication; odd constants from the
- * golden ratio and pi). */
-static inline uint64_t ted4_mix(uint64_t x)
+/* Two rounds of xor-shift and multiplication by odd constants: a bijection of 64 bits. The first
+ * constant consists of digits of pi. */
+static inline uint64_t ted4_mix_rounds(uint64_t x, unsigned first_shift, uint64_t second)
 {
-    x += 0x9e3779b97f4a7c15u;
-    x = (x ^ (x >> 31)) * 0x243f6a8885a308d3u;
-    x = (x ^ (x >> 29)) * 0x13198a2e03707345u;
+    x = (x ^ (x >> first_shift)) * 0x243f6a8885a308d3u;
+    x = (x ^ (x >> 29)) * second;
     return x ^ (x >> 32);
 }
 
-/* Mixes 64 bits for quantisation noise, which needs less mixing than ted4_mix gives: two rounds of
- * xor-shift and multiplication by odd constants (digits of pi). */
+/* A bijective mix of 64 bits; the sum with the golden ratio keeps 0 from being mapped to 0. */
+static inline uint64_t ted4_mix(uint64_t x)
+{
+    return ted4_mix_rounds(x + 0x9e3779b97f4a7c15u, 31, 0x13198a2e03707345u);
+}
+
+/* The same without the sum, for quantisation noise, which adds it to its key once. */
 static inline uint64_t ted4_mix_short(uint64_t x)
 {
-    x = (x ^ (x >> 32)) * 0x243f6a8885a308d3u;
-    x = (x ^ (x >> 29)) * 0xa4093822299f31d1u;
-    return x ^ (x >> 32);
+    return ted4_mix_rounds(x, 32, 0xa4093822299f31d1u);
 }
 
 /* Returns 64 uniform bits of the stream of a key. */
