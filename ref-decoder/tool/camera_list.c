@@ -10,13 +10,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "rotation.h"
+
 #include "camera_transforms.h"
 #include "cli.h"
 
 enum { MAX_SIDE = 16384, TIME_DENOMINATOR = 10000000 };
-
-/* Rotations may contain the rounding errors of numbers in a text file. */
-static const double ROTATION_TOLERANCE = 1e-3;
 
 static int get_number(const json_t *o, const char *key, float *out)
 {
@@ -50,21 +49,6 @@ static int get_side(const json_t *o, const char *key, int *out)
     if (!json_is_integer(v) || n < 1 || n > MAX_SIDE)
         return 0;
     *out = (int)n;
-    return 1;
-}
-
-int ted4_is_rotation(const float R[9])
-{
-    for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 3; j++) {
-            double dot = 0.0;
-
-            for (int k = 0; k < 3; k++)
-                dot += (double)R[3 * i + k] * (double)R[3 * j + k];
-            if (!(fabs(dot - (i == j)) <= ROTATION_TOLERANCE))
-                return 0;
-        }
-    }
     return 1;
 }
 

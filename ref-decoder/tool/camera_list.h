@@ -32,7 +32,4 @@ void ted4_camera_list_free(ted4_camera_list *l);
 /* Prints a list of at least one camera in the form that ted4_camera_list_load reads. */
 void ted4_camera_list_print(const ted4_camera_list *l, FILE *f);
 
-/* Returns 1 if R R^T is the identity, but for the rounding errors of numbers in a text file. */
-int ted4_is_rotation(const float R[9]);
-
 #endif

@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 
 #include "output.h"
+#include "rotation.h"
 
 enum { MAX_SIDE = 16384, TIME_DENOMINATOR = 10000000 };
 

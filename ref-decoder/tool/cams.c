@@ -6,10 +6,10 @@
 #include <string.h>
 
 #include "base/bytes.h"
+#include "rotation.h"
 
-/* R-EXT-009: how far R R^T may be from the identity, and |up| from 1. Sums of products of rounded
- * numbers are off by some 1e-7. */
-#define TOLERANCE 1e-3f
+/* R-EXT-008: how far the length of up may be from 1. */
+#define UP_TOLERANCE 1e-3
 
 enum { KIND_AT = 12, COUNT_AT = 16 };
 
@@ -33,23 +33,6 @@ static int all_finite(const float *x, size_t n)
     return 1;
 }
 
-static int is_rotation(const float R[9])
-{
-    if (!all_finite(R, 9))
-        return 0;
-    for (int i = 0; i < 3; i++) {
-        for (int j = 0; j < 3; j++) {
-            float dot = 0.0f;
-
-            for (int k = 0; k < 3; k++)
-                dot += R[3 * i + k] * R[3 * j + k];
-            if (!(fabsf(dot - (float)(i == j)) <= TOLERANCE))
-                return 0;
-        }
-    }
-    return 1;
-}
-
 static int side_is_valid(int side)
 {
     return side >= 1 && side <= TED4_CAMS_SIDE;
@@ -61,15 +44,16 @@ static int camera_is_valid(const ted4_cams_camera *c)
     const float pinhole[4] = { v->fx, v->fy, v->cx, v->cy };
 
     return side_is_valid(v->width) && side_is_valid(v->height) && all_finite(pinhole, 4) &&
-           v->fx > 0.0f && v->fy > 0.0f && is_rotation(v->R) && all_finite(v->t, 3) &&
+           v->fx > 0.0f && v->fy > 0.0f && ted4_is_rotation(v->R) && all_finite(v->t, 3) &&
            c->time.num <= c->time.den;
 }
 
 static int up_is_valid(const float up[3])
 {
-    const float square = up[0] * up[0] + up[1] * up[1] + up[2] * up[2];
+    const double x = (double)up[0], y = (double)up[1], z = (double)up[2];
+    const double length = sqrt(x * x + y * y + z * z);
 
-    return square == 0.0f || fabsf(square - 1.0f) <= TOLERANCE;
+    return length == 0.0 || fabs(length - 1.0) <= UP_TOLERANCE;
 }
 
 int ted4_cams_read(const uint8_t *payload, size_t size, ted4_cams *c)

@@ -6,6 +6,7 @@
 
 #include "test.h"
 #include "tool/camera_path.h"
+#include "tool/rotation.h"
 
 enum { KEYS = 3 };
 

@@ -242,6 +242,7 @@ static void broken_cameras_are_refused(void **state)
     (void)state;
     expect_refused(0, 0x3f800000); /* up of length sqrt(2) */
     expect_refused(0, nan);
+    expect_refused(4, 0x3f804189); /* 1.002 */
     expect_refused(12, TED4_CAMS_KINDS);
     expect_refused(16, 1);
     expect_refused(16, 3);
@@ -256,7 +257,8 @@ static void broken_cameras_are_refused(void **state)
     expect_refused(CAMERA + 24, 0x3f800000);
     expect_refused(CAMERA + 56, nan);
     expect_refused(CAMERA + 68, infinite);
-    expect_refused(CAMERA + 72, 8); /* num above den */
+    expect_refused(CAMERA + 72, 8);        /* num above den */
+    ted4_store32(payload + 4, 0x3f801d7e); /* 1.0009 */
     assert_int_equal(ted4_cams_read(payload, size, &c), 0);
     assert_int_equal(ted4_cams_read(payload, size - 1, &c), -1);
     assert_int_equal(ted4_cams_read(payload, TED4_CAMS_HEAD - 1, &c), -1);
