@@ -13,7 +13,8 @@
 #include "norm/coder.h"
 #include "random_scene.h"
 
-#define CORPUS "fuzz/corpus/ted4"
+#define CORPUS      "fuzz/corpus/ted4"
+#define REGRESSIONS "fuzz/regressions"
 
 enum { MAX_FILES = 64, MAX_SIZE = 1 << 13, CHANGES = 400 };
 
@@ -89,27 +90,67 @@ static void test_corpus(void **state)
     assert_true(dynamic);
 }
 
+/* Returns how many inputs the list of regressions has of a harness, each of which must be there and
+ * hold something; NULL: of all. */
+static size_t count_listed(const char *harness)
+{
+    FILE *const f = fopen(REGRESSIONS "/list.txt", "r");
+    char line[256], path[512];
+    size_t n = 0;
+
+    assert_non_null(f);
+    while (fgets(line, sizeof line, f) != NULL) {
+        struct stat s;
+
+        line[strcspn(line, "\n")] = '\0';
+        const size_t length = strcspn(line, "/");
+        if (harness != NULL && (length != strlen(harness) || strncmp(line, harness, length) != 0))
+            continue;
+        (void)snprintf(path, sizeof path, REGRESSIONS "/%s", line);
+        if (stat(path, &s) != 0 || !S_ISREG(s.st_mode) || s.st_size == 0)
+            fail_msg("%s is listed, but is not there", path);
+        n++;
+    }
+    fclose(f);
+    return n;
+}
+
+/* Runs the regressions of a harness, which are those of the list. Returns their number. */
+static size_t run_regressions(const fuzz_harness *h)
+{
+    const size_t listed = count_listed(h->name);
+    char path[512];
+    struct stat s;
+    size_t n = 0;
+
+    (void)snprintf(path, sizeof path, REGRESSIONS "/%s", h->name);
+    if (listed > 0 || stat(path, &s) == 0)
+        assert_int_equal(fuzz_replay(h->run, path, &n), 0);
+    assert_int_equal(n, listed);
+    return n;
+}
+
 /* A claim that does not hold ends the process; its message comes before the name of the harness
  * here. */
 static void test_harnesses(void **state)
 {
     char path[512];
+    size_t n_regressions = 0;
 
     (void)state;
     for (const fuzz_harness *h = fuzz_list; h->name != NULL; h++) {
         size_t n = 0;
-        struct stat s;
 
         printf("%s\n", h->name);
         fflush(stdout);
         (void)snprintf(path, sizeof path, "fuzz/corpus/%s", h->seeds);
         assert_int_equal(fuzz_replay(h->run, path, &n), 0);
         assert_true(n > 0);
-        (void)snprintf(path, sizeof path, "fuzz/regressions/%s", h->name);
-        if (stat(path, &s) == 0)
-            assert_int_equal(fuzz_replay(h->run, path, &n), 0);
+        n_regressions += run_regressions(h);
         (void)h->run((const uint8_t *)"", 0);
     }
+    assert_true(n_regressions > 0);
+    assert_int_equal(n_regressions, count_listed(NULL));
 }
 
 /* Changed bytes with correct hashes reach every part of the decoder; some of the files are
