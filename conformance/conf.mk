@@ -53,13 +53,15 @@ conformance-branches: $B/ted4conf
 	awk -f conformance/branches.awk conformance/branches-excluded.txt \
 	    build-gcov/suite.branches build-gcov/tests.branches
 
-# Several threads under ThreadSanitizer: trained streams, and files of nine tiles.
+# Decoding and queries on several threads under ThreadSanitizer: all vectors, and files of nine
+# tiles. Plain kernels too: the sanitizer does not see loads and stores of whole vectors.
 conformance-threads: $B/ted4conf
 	$(MAKE) B=build-tsan CC=clang-14 OPT=-O1 CFLAGS=-fsanitize=thread \
-	    LDFLAGS=-fsanitize=thread build-tsan/ted4dec
-	$B/ted4conf gen --demand --only LVL-n_anchors-6 -o build-tsan/vectors
-	@for f in conformance/vectors/content/*.ted4 build-tsan/vectors/stress/*.ted4; do \
-	    build-tsan/ted4dec -j 4 -q --hash $$f >/dev/null || exit 1; done
+	    LDFLAGS=-fsanitize=thread build-tsan/ted4conf
+	$B/ted4conf gen --demand --only LVL-n_anchors-6 -o build-tsan/nine/vectors
+	for kernel in plain ''; do for suite in conformance build-tsan/nine; do \
+	    TED4_KERNEL=$$kernel build-tsan/ted4conf replay --threads 4 --suite $$suite \
+	        || exit 1; done; done
 
 # Seeded faults; what has a result in conformance/mutants.csv that holds is not run again.
 conformance-mutants:

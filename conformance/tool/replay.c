@@ -6,8 +6,10 @@
 #include <stdlib.h>
 #include <string.h>
 #include "answer.h"
+#include "callers.h"
 #include "judge.h"
 #include "ways.h"
+#include "tool/threads.h"
 
 static int by_size(const void *a, const void *b)
 {
@@ -54,9 +56,13 @@ static void judge_validator(const json_t *d, const conf_bytes *file, conf_verdic
     }
 }
 
-static void judge_ways(const json_t *d, const conf_bytes *file, conf_verdict *v)
+/* team: threads, or NULL: other options instead. */
+static void judge_ways(const json_t *d, const conf_bytes *file, const ted4_parallel *team,
+                       conf_verdict *v)
 {
-    const char *const way = conf_ways_differ(file, conf_knobs_of(d));
+    const conf_knobs knobs = conf_knobs_of(d);
+    const char *const way = team != NULL ? conf_callers_differ(file, knobs, team)
+                                         : conf_ways_differ(file, knobs);
 
     if (way != NULL) {
         v->outcome = CONF_FAIL;
@@ -78,35 +84,63 @@ static void judge(const json_t *capabilities, const json_t *d, const conf_bytes 
     json_decref(answer);
 }
 
+/* Reads the file of a vector. Returns 1; 0 if it is made on demand and not stored; or -1, with the
+ * verdict filled, if the vector cannot be judged. */
+static int fetch(const conf_entry *e, conf_bytes *file, conf_verdict *v)
+{
+    *v = (conf_verdict) { CONF_MISSING, "no descriptor" };
+    if (e->descriptor == NULL)
+        return -1;
+    if (conf_read(e->file, file))
+        return 1;
+    if (json_object_get(e->descriptor, "demand") != NULL)
+        return 0;
+    snprintf(v->reason, sizeof v->reason, "%.300s is not there", e->file);
+    return -1;
+}
+
+/* team: NULL if only one thread is asked for. */
+static void judge_one(const conf_replay_options *o, const ted4_parallel *team,
+                      const json_t *capabilities, const json_t *d, const conf_bytes *file,
+                      conf_verdict *v)
+{
+    judge(capabilities, d, file, v);
+    if (o->validate && v->outcome == CONF_PASS)
+        judge_validator(d, file, v);
+    if (o->ways && v->outcome == CONF_PASS)
+        judge_ways(d, file, NULL, v);
+    if (team != NULL && v->outcome == CONF_PASS)
+        judge_ways(d, file, team, v);
+}
+
 int conf_replay(const conf_replay_options *o)
 {
     json_t *capabilities = json_pack("{s:i, s:[s,s,s,s,s,s], s:s, s:[], s:[s,s]}", "max_level", 31,
                                      "tiers", "T0", "T1", "T2", "T3", "T4", "T5", "class", "X",
                                      "declines", "knobs", "max_alloc_total", "max_work");
     char path[CONF_PATH];
+    ted4_parallel team;
     conf_entry *e;
     size_t n, n_bad = 0, n_run = 0;
 
+    ted4_threads_init(&team, o->threads > 0 ? o->threads : 1);
     conf_path(path, "%s/vectors", o->suite);
     e = conf_suite_load(path, o->list, &n);
     if (n > 0)
         qsort(e, n, sizeof *e, by_size); /* small files first */
     for (size_t i = 0; i < n && !(o->stop && n_bad > 0); i++) {
-        conf_verdict v = { CONF_MISSING, "no descriptor" };
+        conf_verdict v;
         conf_bytes file = { NULL, 0, 0 };
+        const int there = fetch(&e[i], &file, &v);
 
-        if (e[i].descriptor != NULL && !conf_read(e[i].file, &file))
-            continue; /* made on demand: not stored */
+        if (there == 0)
+            continue;
         if (o->names) {
             printf("at %s\n", e[i].id);
             fflush(stdout); /* a caller then sees which vector the decoder crashes at */
         }
-        if (e[i].descriptor != NULL)
-            judge(capabilities, e[i].descriptor, &file, &v);
-        if (o->validate && v.outcome == CONF_PASS)
-            judge_validator(e[i].descriptor, &file, &v);
-        if (o->ways && v.outcome == CONF_PASS)
-            judge_ways(e[i].descriptor, &file, &v);
+        if (there > 0)
+            judge_one(o, o->threads > 1 ? &team : NULL, capabilities, e[i].descriptor, &file, &v);
         n_run++;
         if (v.outcome != CONF_PASS) {
             n_bad++;
@@ -114,8 +148,11 @@ int conf_replay(const conf_replay_options *o)
         }
         conf_free(&file);
     }
-    printf("%zu run, %zu failed\n", n_run, n_bad);
+    ted4_threads_finish(&team);
     conf_suite_free(e, n);
     json_decref(capabilities);
-    return n_bad > 0 || n_run == 0;
+    if (n_run == 0)
+        conf_die("%s: no vector has a file", path);
+    printf("%zu run, %zu failed\n", n_run, n_bad);
+    return n_bad > 0;
 }

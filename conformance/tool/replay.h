@@ -10,10 +10,13 @@ typedef struct {
     int validate; /* 1: also run the validator (spec 3.6), which has to find the expected errors,
                      and none in valid files */
     int ways;     /* 1: also decode with other options (ways.h) */
+    int threads;  /* above 1: also decode and query on so many threads (callers.h) */
     int names;    /* 1: print a line "at ID" before each vector */
 } conf_replay_options;
 
-/* Returns the exit code: 0 if all vectors pass, else 1. */
+/* Returns the exit code: 0 if all vectors pass, else 1. A vector fails, too, if its file is not
+ * there, unless it is one that is made on demand; such a vector is passed over. If there is no file
+ * at all, the process ends with a message and code 3. */
 int conf_replay(const conf_replay_options *o);
 
 #endif

@@ -13,6 +13,7 @@
 #include "run.h"
 #include "ted4.h"
 #include "tool/arguments.h"
+#include "tool/threads.h"
 
 enum { USAGE = 3 };
 
@@ -265,6 +266,7 @@ enum {
     REPLAY_STOP,
     REPLAY_NAMES,
     REPLAY_WAYS,
+    REPLAY_THREADS,
     REPLAY_VALIDATE,
     REPLAY_HELP,
     REPLAY_VERSION,
@@ -278,6 +280,8 @@ static const ted4_argument replay_table[REPLAY_OPTIONS] = {
     [REPLAY_NAMES] = { 0, "names", NULL, "say each vector's id before its turn" },
     [REPLAY_WAYS] = { 0, "ways", NULL,
                       "also with threads, with a trace, without options: nothing may change" },
+    [REPLAY_THREADS] = { 'j', "threads", "N",
+                         "also decode and query on N threads at once. Default 1" },
     [REPLAY_VALIDATE] = { 0, "validate", NULL, "also ask our validator" },
     [REPLAY_HELP] = TED4_ARGUMENT_HELP,
     [REPLAY_VERSION] = TED4_ARGUMENT_VERSION,
@@ -290,7 +294,7 @@ static int replay(int argc, char **argv)
                                           "Our own decoder against the suite, in one process.",
                                           replay_table,
                                           REPLAY_OPTIONS,
-                                          "Exit codes: 0 all pass, 1 not, 3 usage.\n",
+                                          "Exit codes: 0 all pass, 1 not, 3 usage or no vectors.\n",
                                           NULL };
     conf_replay_options o = { .suite = "conformance" };
     const char *value;
@@ -304,6 +308,7 @@ static int replay(int argc, char **argv)
         case REPLAY_STOP: o.stop = 1; break;
         case REPLAY_NAMES: o.names = 1; break;
         case REPLAY_WAYS: o.ways = 1; break;
+        case REPLAY_THREADS: o.threads = (int)number(value, TED4_MAX_THREADS); break;
         default: o.validate = 1;
         }
     return optind < argc ? usage("replay takes no operand") : conf_replay(&o);

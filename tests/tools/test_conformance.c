@@ -9,6 +9,7 @@
 
 #include "test.h"
 #include "base/level.h"
+#include "temporary.h"
 #include "ted4.h"
 
 #ifdef __SANITIZE_ADDRESS__
@@ -137,6 +138,17 @@ static void ways_agree(void **state)
 
     (void)state;
     if (conf(last, sizeof last, "replay --ways") != 0)
+        fail_msg("%s", said);
+}
+
+/* Decodes and asks on four threads at once, lent to the library or each a caller of its own; make
+ * conformance-threads has the thread sanitizer watch. */
+static void threads_agree(void **state)
+{
+    char last[1024];
+
+    (void)state;
+    if (conf(last, sizeof last, "replay --threads 4") != 0)
         fail_msg("%s", said);
 }
 
@@ -271,6 +283,44 @@ static void missing_vectors(void **state)
     assert_non_null(strstr(last, " 1 passed, 0 failed, 0 without answer, 1 missing"));
 }
 
+/* Leaves in FOLDER/vectors one vector with its file, one that is made on demand, and one whose file
+ * is gone. */
+static void make_torn_suite(const char *folder)
+{
+    char command[1024];
+
+    snprintf(command, sizeof command,
+             "mkdir %s/vectors && cp conformance/vectors/worked/WRK-masks.* "
+             "conformance/vectors/worked/WRK-escape.json "
+             "conformance/vectors/stress/ENT-lanes-64-more.json %s/vectors",
+             folder, folder);
+    assert_int_equal(system(command), 0);
+}
+
+/* A vector whose file is gone fails, unless it is one that is made on demand; a suite without files
+ * is an error. */
+static void replay_without_files(void **state)
+{
+    char folder[TEMPORARY_SIZE], last[1024], line[512];
+
+    (void)state;
+    temporary_folder(folder, "ted4-test-replay");
+    make_torn_suite(folder);
+    assert_int_equal(conf(last, sizeof last, "replay --suite %s", folder), 1);
+    assert_string_equal(last, "2 run, 1 failed\n");
+    snprintf(line, sizeof line, "missing: WRK-escape: %s/vectors/WRK-escape.ted4 is not there\n",
+             folder);
+    assert_non_null(strstr(said, line));
+    snprintf(line, sizeof line, "rm %s/vectors/WRK-*", folder);
+    assert_int_equal(system(line), 0);
+    assert_int_equal(conf(last, sizeof last, "replay --suite %s", folder), 3);
+    snprintf(line, sizeof line, "ted4conf: %s/vectors: no vector has a file\n", folder);
+    assert_string_equal(said, line);
+    assert_int_equal(conf(last, sizeof last, "replay --suite %s/absent", folder), 3);
+    snprintf(line, sizeof line, "rm -r %s", folder);
+    assert_int_equal(system(line), 0);
+}
+
 /* work.txt: the first vector may give any limit, the second only limit.work. */
 static void limits(void **state)
 {
@@ -323,6 +373,7 @@ int main(void)
         cmocka_unit_test(our_decoder_conforms),
         cmocka_unit_test(levels_conform),
         cmocka_unit_test(ways_agree),
+        cmocka_unit_test(threads_agree),
         cmocka_unit_test(lies),
         cmocka_unit_test(class_t),
         cmocka_unit_test(lenient_mode),
@@ -330,6 +381,7 @@ int main(void)
         cmocka_unit_test(declining),
         cmocka_unit_test(left_behind),
         cmocka_unit_test(missing_vectors),
+        cmocka_unit_test(replay_without_files),
         cmocka_unit_test(limits),
         cmocka_unit_test(levels_above),
         cmocka_unit_test(version),
