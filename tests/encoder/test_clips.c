@@ -234,6 +234,48 @@ static void test_playlists(void **state)
     tiny_free(&f);
 }
 
+/* Playlists that are not text, and some behind the first bytes of a video, for which ffmpeg is
+ * started if it is there. */
+static void test_disguised_playlists(void **state)
+{
+#define LIST "\n#EXTM3U\n#EXTINF:1,\nb.mp4\n"
+#define DISGUISE(bytes, what)               \
+    {                                       \
+        bytes LIST, sizeof bytes LIST, what \
+    }
+    static const char unknown[] = "begins like no video that is known here";
+    static const struct {
+        const char *bytes;
+        size_t size;
+        const char *what;
+    } disguises[] = {
+        DISGUISE("\0", unknown),
+        DISGUISE("\xff\xfe#\0E\0X\0T\0M\0003\0U\0", unknown),
+        DISGUISE("RIFF\1\2\3\4WAVE", unknown),
+        DISGUISE("\0\0\0\x14"
+                 "ftypisom",
+                 ""),
+        DISGUISE("\x1a\x45\xdf\xa3", ""),
+        DISGUISE("OggS\0", ""),
+        DISGUISE("\0\0\1\xba", ""),
+        DISGUISE("FLV\1", ""),
+    };
+#undef DISGUISE
+#undef LIST
+    tiny_folder f = tiny_new(), cache = tiny_new();
+
+    (void)state;
+    setenv("XDG_CACHE_HOME", cache.path, 1);
+    tiny_text(&f, "cams.json", "{\"cameras\": [{\"name\": \"a\", " CAMERA "]}");
+    for (size_t i = 0; i < sizeof disguises / sizeof disguises[0]; i++) {
+        tiny_bytes(&f, "a.mp4", disguises[i].bytes, disguises[i].size);
+        refuse(&f, "a.mp4: ", disguises[i].what);
+    }
+    unsetenv("XDG_CACHE_HOME");
+    tiny_free(&cache);
+    tiny_free(&f);
+}
+
 /* The example of doc/layouts.md loads, with clips of 300 frames. */
 static void test_example(void **state)
 {
@@ -268,7 +310,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_stills),    cmocka_unit_test(test_copies),
         cmocka_unit_test(test_rows),      cmocka_unit_test(test_starts),
-        cmocka_unit_test(test_playlists), cmocka_unit_test(test_example),
+        cmocka_unit_test(test_playlists), cmocka_unit_test(test_disguised_playlists),
+        cmocka_unit_test(test_example),
     };
 
     return cmocka_run_group_tests_name("clips", tests, NULL, NULL);

@@ -1,8 +1,9 @@
 #!/bin/sh
 # The decoder library takes memory through the caller's allocator only (SECURITY.md): base/arena.c
-# alone calls malloc, and zlib is given the arena. It prints nothing, ends no process, and keeps
-# nothing between calls: no variable of a file or function that can change. Its folders are those of
-# DEC_SRC in the Makefile; render/ draws for programs and is a library of its own.
+# alone calls malloc, and zlib is given the arena. It prints nothing, ends no process, starts no
+# thread, and keeps nothing between calls: no variable of a file or function that can change
+# (state.py). Its folders are those of DEC_SRC in the Makefile; render/ draws for programs and is a
+# library of its own.
 bad=0
 folders=$(sed -n '/^DEC_SRC/,/)))/s/.*addprefix ref-decoder\/,\([^)]*\)).*/\1/p' Makefile |
     tr ' ,' '\n\n' | sed 's/\/\*\.c$//')
@@ -12,15 +13,15 @@ for f in $(for d in $folders; do ls ref-decoder/$d/*.[ch]; done); do
     case $f in
     ref-decoder/base/arena.c) ;;
     *) printf '%s\n' "$text" | grep \
-        -E '\b(malloc|calloc|realloc|free|aligned_alloc|strn?dup|alloca|compress2?|uncompress2?|XXH[0-9]+_createState) *\(' |
+        -E '\b(malloc|calloc|reallocarray|realloc|aligned_alloc|posix_memalign|memalign|mmap|strn?dup|alloca|compress2?|uncompress2?|XXH[0-9]+_createState)\b|\bfree *\(' |
         sed "s|^|$f: memory of its own: |" | grep . && bad=1 ;;
     esac
     printf '%s\n' "$text" | grep \
-        -E '\b(v?f?printf|puts|fputs|putchar|perror|exit|_exit|abort|assert|signal|longjmp) *\(' |
-        sed "s|^|$f: prints or ends: |" | grep . && bad=1
-    printf '%s\n' "$text" | grep -oE "\bstatic [^(;={]*[;={]" | grep -v "\bconst\b" |
-        sed "s|^|$f: keeps: |" | grep . && bad=1
+        -E '(^|[^.>[:alnum:]_])(v?[fd]?printf|f?puts|f?putc|putchar|fwrite|write|perror|fopen|open|exit|_exit|_Exit|quick_exit|abort|assert|raise|signal|longjmp|pthread_create|thrd_create) *\(' |
+        sed "s|^|$f: prints, ends or starts a thread: |" | grep . && bad=1
 done
+# shellcheck disable=SC2046 # file names without spaces
+python3 tests/lint/state.py $(for d in $folders; do ls ref-decoder/$d/*.[ch]; done) || bad=1
 # zlib without an allocator takes malloc.
 for f in $(grep -lE '\b(in|de)flateInit2?\(' ref-decoder/read/*.c); do
     grep -q 'zalloc = ted4_zlib_alloc' "$f" || { echo "$f: zlib has malloc"; bad=1; }

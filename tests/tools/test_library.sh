@@ -37,6 +37,22 @@ else
     skip symbols "there is no nm"
 fi
 
+# What the library calls is zlib, xxHash and functions of C that neither print nor end the process
+# nor reach outside; and nothing in it can change (what is constant but for its relocation aside).
+calls='ted4_.*|XXH.*|(in|de)flate(End|Init_)?|malloc|free|getenv|(mem|str)[a-z]*|bcmp|sqrtf?'
+calls="$calls|_GLOBAL_OFFSET_TABLE_|__cpu_.*|__stack_chk_fail|__aarch64_.*"
+if has nm && has objdump; then
+    nm -u "$TED4_BUILD/libted4dec.a" | awk '$1 == "U" { print $2 }' | grep -vxE "$calls" |
+        sort -u >"$out/calls"
+    if [ -s "$out/calls" ]; then fail calls "$(cat "$out/calls")"; else ok calls; fi
+    objdump -t "$TED4_BUILD/libted4dec.a" |
+        awk '/[ \t](\.data|\.bss|\.tdata|\.tbss|\*COM\*)/ && !/ d / && !/\.data\.rel\.ro/' \
+            >"$out/kept"
+    if [ -s "$out/kept" ]; then fail keeps "$(cat "$out/kept")"; else ok keeps; fi
+else
+    skip calls "there is no nm or no objdump"
+fi
+
 # Every function that the installed headers declare is exported, and nothing else.
 sed 's|//.*||' "$usr/include/ted4/ted4.h" "$usr/include/ted4/base/status.h" | tr '\n' ' ' |
     sed 's|/\*[^*]*\*\+\([^/*][^*]*\*\+\)*/| |g' | tr ';' '\n' |

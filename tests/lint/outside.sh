@@ -1,0 +1,41 @@
+#!/bin/sh
+# What reaches beyond the process - its environment, other programs, code that is loaded, the
+# network - occurs in the files named here only, each with the functions that it may use. Tests are
+# free.
+export LC_ALL=C
+allow="
+ref-decoder/base/level.c       getenv
+ref-decoder/tool/arguments.c   getenv
+ref-decoder/tool/video_out.c   fork execlp
+ref-encoder/data/video.c       getenv fork execlp
+tools/scene/ray_set.c          fork execlp
+conformance/tool/process.c     fork execv setenv
+conformance/tool/run.c         getenv
+conformance/tool/encoder.c     getenv
+conformance/tool/mutants.c     getenv fork system
+fuzz/scene_folder.c            getenv
+bench/bench_decode.c           setenv
+bench/bench_render.c           setenv
+bench/bench_train.c            setenv
+player/wasm/include/stdlib.h   getenv
+"
+words="getenv|secure_getenv|environ|setenv|unsetenv|putenv|clearenv|system|popen|wordexp"
+words="$words|execl|execle|execlp|execv|execve|execvp|execvpe|execveat|fexecve|fork|vfork|clone"
+words="$words|posix_spawnp?|dlopen|dlsym|syscall|socket"
+folders="ref-decoder ref-encoder conformance fuzz bench tools player doc"
+found=$(grep -rlwE "$words" $folders --include='*.[ch]' | while read -r f; do
+    # Without comments and strings; members of a structure have names of their own.
+    gcc -fpreprocessed -dD -E -P "$f" 2>/dev/null | sed 's/"\([^"\\]\|\\.\)*"//g' |
+        grep -oE "(\.|->)? *\b($words)\b" | grep -v '^[.-]' | tr -d ' ' | sort -u | sed "s|^|$f |"
+done)
+allowed=$(echo "$allow" | awk '{ for (i = 2; i <= NF; i++) print $1, $i }')
+bad=0
+for one in $(echo "$found" | tr ' ' ':'); do
+    echo "$allowed" | grep -qxF "$(echo "$one" | tr ':' ' ')" ||
+        { echo "${one%:*}: may not use ${one#*:}"; bad=1; }
+done
+for one in $(echo "$allowed" | tr ' ' ':'); do
+    echo "$found" | grep -qxF "$(echo "$one" | tr ':' ' ')" ||
+        { echo "tests/lint/outside.sh: ${one%:*} does not use ${one#*:}"; bad=1; }
+done
+exit $bad
