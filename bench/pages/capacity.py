@@ -1,9 +1,11 @@
 """bench/capacity.md: how much model is chosen, against fixed settings: bars 4 to 6 of the lab.
 SPDX-License-Identifier: BSD-2-Clause"""
+from .bars import DELIVERED, Bars, First
 from .capacity_cost import Costs, temporal
+from .earlier import earlier
 from .plot import Plot
 from .rows import mark
-from .words import Bars, Page, cells, fixed, signed
+from .words import Page, cells, fixed, signed
 
 EQUAL_PSNR = 0.1    # dB: a fixed setting that far below auto still counts as equal
 NEAR_BEST = 0.02    # share of the cost
@@ -12,10 +14,10 @@ THINGS = {"things0": "0", "things1": "1", "things2": "2", "things4": "4", "thing
 TIMES = {"things4": "16", "long2": "32", "long4": "64"}
 
 
-def write(runs, charts, *_):
+def write(runs, charts, results, _):
     """{name of the file: text}, with charts drawn."""
     bars, costs = Bars(), Costs(runs)
-    cost_bar(runs, bars, costs)
+    cost_bar(runs, bars, costs, results)
     time_bar(runs, bars)
     for scene in ("still", "chair", "moment"):
         still_bar(runs, bars, scene)
@@ -55,7 +57,7 @@ def is_near_best(runs, costs, scene):
             or spread is not None and more <= spread)
 
 
-def cost_bar(runs, bars, costs):
+def cost_bar(runs, bars, costs, results):
     """4: cost on every scene with a grid."""
     scenes = [scene for scene in runs.scenes
               if runs.of(scene, "auto") and len(costs.fixed(scene)) >= 2]
@@ -73,7 +75,14 @@ def cost_bar(runs, bars, costs):
     bars.add(4, "cost of auto against the best fixed setting",
              "at most 2 % more, or one standard deviation over seeds, on every scene", measured,
              False if missed else True if scenes and len(over) == len(scenes) else None,
-             command("auto grid"))
+             command("auto grid"), first_cost(results))
+
+
+def first_cost(results):
+    """The bar of the cost as it first was; its rows are gone."""
+    measured, was_met = earlier(results, "cost_six_cameras")
+    return First("the same, own scenes with six cameras instead of twelve",
+                 measured or "not measured any more", was_met)
 
 
 def time_bar(runs, bars):
@@ -86,7 +95,7 @@ def time_bar(runs, bars):
     bars.add(4, "training time of auto against the same options fixed, CPU", "at most 25 % more",
              f"most: {worst} {signed(100 * more[worst], 0, ' %')}" if more else "",
              False if more and more[worst] > MOST_TIME
-             else True if pairs and len(more) == len(pairs) else None,
+             else DELIVERED if pairs and len(more) == len(pairs) else None,
              command("'*-auto-1' '*-whole-1'"))
 
 
@@ -119,10 +128,17 @@ def things_bar(bars, costs):
     known = [value for value in means if value is not None]
     grows = (means[0] in (0, None)
              and all(a < b for a, b in zip(known, known[1:])))
+    ok = False if known and not grows else True if len(known) == len(means) else None
     bars.add(6, "bytes for time with 0, 1, 2, 4, 8 moving things, mean over seeds",
              "0 first, then more and more", ", ".join(f"{value:.0f}" for value in known),
-             False if known and not grows else True if len(known) == len(means) else None,
-             command("'things*-auto-*'"))
+             ok, command("'things*-auto-*'"), first_things(costs.runs) if ok is not None else None)
+
+
+def first_things(runs):
+    """The bar of things_bar as it first was: of one seed alone."""
+    spent = [temporal(runs.first(scene, "auto")) for scene in THINGS]
+    return First("the same, of seed 1 alone", ", ".join(f"{value:.0f}" for value in spent),
+                 spent[0] == 0 and all(a < b for a, b in zip(spent, spent[1:])))
 
 
 # ---- the sections ----

@@ -3,11 +3,13 @@ SPDX-License-Identifier: BSD-2-Clause"""
 import os
 
 from . import stability_tables as tables
+from .bars import DELIVERED, Bars, First
+from .earlier import earlier
 from .notes import read_notes
 from .rows import mark
 from .stability_marks import draw
 from .stability_rules import Cell
-from .words import Bars, Page, signed
+from .words import Page, signed
 
 MOST_SEED_SPREAD = 0.3  # dB, on easy scenes
 LEAST_GAIN = 1          # dB of the worst frame, where things come, go or hide
@@ -17,8 +19,8 @@ SCENES, VARIANTS = 16, 6
 class Lab:
     """variants: those of the lab, in the order of the table."""
 
-    def __init__(self, runs, charts, notes):
-        self.runs, self.charts, self.notes = runs, charts, notes
+    def __init__(self, runs, charts, notes, results):
+        self.runs, self.charts, self.notes, self.results = runs, charts, notes, results
         self.unread = dict(notes)
         self.variants = [variant for variant in runs.variants
                          if any(runs.wants(scene, variant, "lab") for scene in runs.scenes)]
@@ -43,9 +45,10 @@ class Lab:
         return self.notes.get(key, "")
 
 
-def write(runs, charts, *_):
+def write(runs, charts, results, _):
     """{name of the file: text}, with charts drawn."""
-    lab = Lab(runs, charts, read_notes(os.environ.get("TED4_NOTES", "bench/stability-notes.md")))
+    lab = Lab(runs, charts, read_notes(os.environ.get("TED4_NOTES", "bench/stability-notes.md")),
+              results)
     draw(lab, "worst", "Worst held-out frame", "PSNR dB", "worst")
     draw(lab, "mean", "Mean of held-out frames", "PSNR dB", "psnr")
     draw(lab, "out", "Anchors thrown out of every picture", "% of drawn anchors", "out_share",
@@ -87,7 +90,7 @@ def run_bars(lab):
     enough = complete >= SCENES
     lab.bars.add(1, "what ran", "at least 16 scenes x 3 seeds x 6 variants",
                  f"{complete} scenes whole, with {len(lab.variants)} variants; {rows} of {wanted} "
-                 "rows", True if enough and len(lab.variants) >= VARIANTS else None, command())
+                 "rows", DELIVERED if enough and len(lab.variants) >= VARIANTS else None, command())
     whole = [lab.cell(scene, "whole") for scene in lab.runs.scenes]
     broken = sum(cell.breaks(rule) for cell in whole
                  for rule in ("crash", "error", "nan", "diverges"))
@@ -96,7 +99,7 @@ def run_bars(lab):
                  False if broken else True if enough else None, command("'*-whole-*'"))
     lab.bars.add(1, "weak spots of the whole method", "every one explained",
                  f"{lab.failures} scenes, {lab.unexplained} of them unexplained",
-                 False if lab.unexplained else True if enough else None,
+                 False if lab.unexplained else DELIVERED if enough else None,
                  "[notes](stability-notes.md)")
 
 
@@ -131,7 +134,42 @@ def thrown_bar(lab):
     lab.bars.add(2, "anchors thrown out of view where things come, go or hide, means over seeds",
                  "fewer than without activation, and in no scene more",
                  ", ".join(f"{scene} {a:.1f} against {b:.1f}" for scene, (a, b) in out.items()),
-                 ok, command("'*-whole-*' '*-noactive-*'"))
+                 ok, command("'*-whole-*' '*-noactive-*'"), first_thrown(lab))
+
+
+def first_thrown(lab):
+    """The bar of thrown_bar as it first was; None as long as a scene of it is missing."""
+    verdicts = {}
+    for scene in lab.in_group("come_first"):
+        cells = [lab.cell(scene, variant) for variant in ("whole", "noactive")]
+        if not all(map(has_three, cells)):
+            return None
+        ours, theirs = (cell.mean("out") or 0 for cell in cells)
+        verdicts[scene] = "?" if ours + theirs == 0 else ours < theirs
+    found = list(verdicts.values())
+    if not found:
+        return None
+    return First("in each of " + ", ".join(verdicts) + " by itself, fewer than without activation"
+                 " (the other scenes were made later)",
+                 "; ".join(f"{scene}: {Bars.WORDS[ok]}" for scene, ok in verdicts.items()),
+                 False if False in found else "?" if "?" in found else True)
+
+
+def spread_text(spreads):
+    return "; ".join(f"{scene} {spread:.2f} dB" for scene, spread in spreads.items())
+
+
+def first_easy(lab):
+    """The bar of the spread as it first was: of other easy scenes, and turn with six cameras, whose
+    rows are gone. None as long as none of them has rows."""
+    cells = [lab.cell(scene, "whole") for scene in lab.in_group("easy_first")]
+    spreads = {cell.scene: cell.spread() for cell in cells if cell.spread() is not None}
+    if not spreads:
+        return None
+    gone, was_met = earlier(lab.results, "easy_six_cameras")
+    missed = any(spread >= MOST_SEED_SPREAD for spread in spreads.values()) or was_met is False
+    return First("easy scenes: turn with six cameras, " + ", ".join(spreads),
+                 "; ".join(filter(None, (spread_text(spreads), gone))), not missed)
 
 
 def seed_bars(lab):
@@ -140,9 +178,10 @@ def seed_bars(lab):
     spreads = {cell.scene: cell.spread() for cell in easy if cell.spread() is not None}
     worst = max(spreads.values(), default=None)
     lab.bars.add(3, "spread of mean PSNR between seeds, easy scenes", "below 0.3 dB",
-                 "; ".join(f"{scene} {spread:.2f} dB" for scene, spread in spreads.items()),
+                 spread_text(spreads),
                  None if worst is None else False if worst >= MOST_SEED_SPREAD
-                 else True if all(map(has_three, easy)) else None, command("easy"))
+                 else True if all(map(has_three, easy)) else None, command("easy"),
+                 first_easy(lab))
     again = [(lab.runs.first(scene, "again"), lab.runs.first(scene, "whole"))
              for scene in lab.runs.scenes if lab.runs.of(scene, "again")]
     compared = [(a, b) for a, b in again

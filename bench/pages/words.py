@@ -1,4 +1,4 @@
-"""A page as it grows: prose, tables, and the verdicts of its bars.
+"""A page as it grows: prose and tables.
 SPDX-License-Identifier: BSD-2-Clause"""
 import re
 import textwrap
@@ -89,30 +89,3 @@ class Page:
 
     def text(self):
         return "\n".join(self.lines) + "\n"
-
-
-class Bars:
-    """What was promised, and whether it was met. ok: True, False, None (not run yet), or "?"
-    (measured, but it says neither)."""
-
-    WORDS = {True: "met", False: "**missed**", None: "not run yet", "?": "cannot be said"}
-
-    def __init__(self):
-        self.rows, self.verdicts = [], dict.fromkeys(self.WORDS.values(), 0)
-
-    def add(self, number, what, limit, measured, ok, how):
-        verdict = self.WORDS[ok]
-        self.verdicts[verdict] += 1
-        self.rows.append((str(number), what, limit, measured or "-", verdict, how))
-
-    def show(self, page, how):
-        page.table("#", "what", "bar", "measured", "verdict", how)
-        for row in self.rows:
-            page.row(*row)
-
-    def summary(self):
-        count = self.verdicts
-        return (f"Bars: {count['met']} met, {count['**missed**']} missed, "
-                f"{count['not run yet']} not run yet"
-                + (f", {count['cannot be said']} that cannot be said"
-                   if count["cannot be said"] else "") + ".")

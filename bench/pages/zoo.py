@@ -3,9 +3,10 @@ SPDX-License-Identifier: BSD-2-Clause"""
 import os
 import re
 
+from .bars import Bars
 from .notes import read_notes
 from .rows import made_with, mark
-from .words import Bars, Page, cells, fixed, signed
+from .words import Page, cells, fixed, signed
 
 MOST_BELOW = 1      # dB below the twin
 LEAST_MOVING = 22   # dB inside the masks of what moves, where cameras take turns

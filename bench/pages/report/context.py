@@ -1,7 +1,8 @@
 """What all sections of the report share.
 SPDX-License-Identifier: BSD-2-Clause"""
+from ..bars import Bars
 from ..plot import SceneStyles
-from ..words import Bars, Page
+from ..words import Page
 
 
 class Report:

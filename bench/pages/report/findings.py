@@ -190,12 +190,13 @@ def section(report, page):
 
 def open_section(report, page):
     """What was promised, and missed or left open."""
-    count = report.bars.verdicts
+    bars = report.bars
     page.heading("What was promised and not met")
-    page.prose(f"""Of {sum(count.values())} bars {count['met']} are met
-        ([all bars](report-tables.md#bars)). [Notes](#notes) tell what stands behind the others:""")
+    page.prose(bars.summary("report-tables.md"))
+    page.prose("""[All bars](report-tables.md#bars). [Notes](#notes) tell what stands behind those
+        that are not met:""")
     page.say()
     for wanted in ("**missed**", "cannot be said", "not run yet"):
-        for _, what, limit, _, verdict, _ in report.bars.rows:
-            if verdict == wanted:
-                page.item(f"{verdict}: {what} (asked: {limit})")
+        for row in bars.rows:
+            if row.verdict == wanted:
+                page.item(f"{row.said}: {row.what} (asked: {row.limit})")

@@ -1,6 +1,7 @@
 """Quantisation steps and precision of the entropy networks against bytes, PSNR and decode time:
 bar 10.
 SPDX-License-Identifier: BSD-2-Clause"""
+from ..bars import DELIVERED
 from ..plot import Plot
 from ..rows import mark
 from ..words import fixed, signed
@@ -54,7 +55,8 @@ def section(report):
                 "[precision](charts/precision.svg)" + (text and "; " + text))
     report.bars.add(10, "Q0 and network precision (float64, float32, integer as coded) against "
                     "bytes, PSNR and decode time", "one chart", text,
-                    True if wanted and there == len(wanted) else None, sweep("precision rd"))
+                    DELIVERED if wanted and there == len(wanted) else None,
+                    sweep("precision rd"))
 
 
 def precision_row(page, run, factor):

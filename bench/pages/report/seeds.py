@@ -1,5 +1,6 @@
 """The spread that the seed alone makes: bar 11; and small differences over seeds.
 SPDX-License-Identifier: BSD-2-Clause"""
+from ..bars import DELIVERED
 from ..compare import Seeded, seed_spread, seeded_variants, whole_run
 from ..plot import Plot, panels
 from ..rows import mark
@@ -43,7 +44,7 @@ def section(report):
     chart(report, scenes)
     rows = mark([run for _, by_seed in scenes for run in by_seed])
     report.bars.add(11, "three seeds on one scene", "spread of PSNR and bytes reported",
-                    "; ".join(texts) + rows if texts else "", True if texts else None,
+                    "; ".join(texts) + rows if texts else "", DELIVERED if texts else None,
                     sweep("seed kitchen-whole-2 fair-whole-2"))
 
 

@@ -1,5 +1,6 @@
 """What time buys: PSNR over training time by preset, and over the time to decode and draw: bar 5.
 SPDX-License-Identifier: BSD-2-Clause"""
+from ..bars import DELIVERED
 from ..logs import read_lines
 from ..plot import Plot, panels
 from ..rows import mark
@@ -51,7 +52,7 @@ def section(report):
                     f"{there} of {len(drawn)} runs drawn{mark(drawn)}: "
                     "[one](charts/training.svg), [two](charts/picture.svg), "
                     "[three](charts/bytes.svg)" if there else "",
-                    True if drawn and there == len(drawn) else None, sweep("preset rd"))
+                    DELIVERED if drawn and there == len(drawn) else None, sweep("preset rd"))
 
 
 def show_training(report, page):
