@@ -63,8 +63,10 @@ class Change:
     runs                  how many
     rate, psnr            means of rate_change and psnr_change over the runs that the curve reaches
     near_psnr, near_rate  mean differences to the nearest points, dB and percent
-    gap, cubic            rate between the two curves at the same lambdas, percent: straight lines;
-                          Bjontegaard's cubics (None with fewer than four points)
+    bd_rate               BD-rate: mean rate between the two curves at the same lambdas, percent:
+                          on Bjontegaard's cubics; with fewer than four points on straight lines;
+                          None with fewer than two, or where the curves share no PSNR
+    is_cubic              which of the two
     worse                 than the base: True, False, or None: it cannot be said"""
 
     def __init__(self, runs, scene, variant, against=None):
@@ -78,8 +80,9 @@ class Change:
         self.near_rate = curves.as_percent(mean([
             math.log(run.count("bytes") / other.count("bytes")) for run, other in near]))
         a, b = curve_of(runs, scene, base, like=variant), curve_of(runs, scene, variant)
-        self.gap = curves.as_percent(curves.mean_gap(a, b))
-        self.cubic = curves.as_percent(curves.bjontegaard(a, b))
+        cubic = curves.bjontegaard(a, b)
+        self.is_cubic = cubic is not None
+        self.bd_rate = curves.as_percent(cubic if self.is_cubic else curves.mean_gap(a, b))
         self.worse = self.is_worse() if self.runs else None
 
     def is_worse(self):
@@ -93,19 +96,11 @@ class Change:
             return True
         return False if self.near_psnr >= 0 >= self.near_rate else None
 
-    def one_rate(self):
-        """The rate in one number: by cubics where there are points enough, else at equal PSNR,
-        else between straight lines."""
-        for rate in (self.cubic, self.rate, self.gap):
-            if rate is not None:
-                return rate
-        return None
-
-    def bd_rate(self):
+    def bd_rate_text(self):
         """BD-rate, and how it was found."""
-        if self.cubic is not None:
-            return signed(self.cubic, 1, " %") + " (cubic)"
-        return signed(self.gap, 1, " %") + ("" if self.gap is None else " (lines)")
+        if self.bd_rate is None:
+            return "-"
+        return signed(self.bd_rate, 1, " %") + (" (cubic)" if self.is_cubic else " (lines)")
 
     def near_words(self):
         return near_words(self.near_psnr, self.near_rate)

@@ -77,11 +77,11 @@ def prior(report):
     runs = report.runs
     by_default = Change(runs, SCENE, "factorised_flat_auto")
     as_fixed = Change(runs, SCENE, "factorised_flat")
-    if by_default.one_rate() is None or as_fixed.one_rate() is None:
+    if by_default.bd_rate is None or as_fixed.bd_rate is None:
         return None
     return (f"With a factorised prior in the place of the hyperprior, files of `{SCENE}` take "
-            f"{by_default.one_rate():.1f} % more bytes at equal PSNR when each chooses its "
-            f"capacity, as by default, and {as_fixed.one_rate():.1f} % more when the capacity is "
+            f"{by_default.bd_rate:.1f} % more bytes at equal PSNR (BD-rate) when each chooses its "
+            f"capacity, as by default, and {as_fixed.bd_rate:.1f} % more when the capacity is "
             "fixed. The paper's figure is 25 %.",
             [run for variant in ("factorised_flat_auto", "whole_auto", "factorised_flat", "whole")
              for run in runs.of(SCENE, variant)])

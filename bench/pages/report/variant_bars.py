@@ -64,14 +64,20 @@ def variant_bar(report, scene, variant, what, limit, against=None):
     within = within_seeds(runs, scene, change)
     seeded = Seeded(runs, scene, variant)
     rows = mark(runs.of(scene, variant) + runs.of(scene, base))
-    measured = (f"`{own_options(runs, runs.first(scene, variant))}`: rate at equal PSNR "
-                f"{signed(change.one_rate(), 1, ' %')}, "
+    measured = (f"`{own_options(runs, runs.first(scene, variant))}`: {rate_text(change)}, "
                 f"PSNR at equal bytes {signed(change.psnr, 2, ' dB')}; nearest "
                 f"{change.near_words()}{rows}{'; within seeds' if within else ''}")
     if seeded.changes:
         measured += (f"; at {len(seeded.changes)} seeds {seeded.by_seed()}, mean "
                      f"{seeded.mean_text()} dB{seeded.mark()}")
     report.bars.add(1, what, limit, measured, is_met(variant, change, within, seeded), how)
+
+
+def rate_text(change):
+    """BD-rate; where there is none, the rate at equal PSNR, which a single run has."""
+    if change.bd_rate is not None or change.rate is None:
+        return f"BD-rate {change.bd_rate_text()}"
+    return f"BD-rate -, rate at equal PSNR {signed(change.rate, 1, ' %')}"
 
 
 def minutes(run):
@@ -81,11 +87,8 @@ def minutes(run):
 
 def is_met(variant, change, within, seeded):
     """Another prior begins where the whole method's stage 1 ends: seeds do not come between."""
-    rate = change.one_rate()
     if variant.startswith("factorised"):
-        if rate is None:
-            return change.near_rate >= 10 if change.near_psnr <= 0 else "?"
-        return rate >= 10
+        return "?" if change.bd_rate is None else change.bd_rate >= 10
     if within:
         return seeded.is_worse()
     if variant == "static":

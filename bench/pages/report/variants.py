@@ -48,10 +48,10 @@ def explain(page):
         interpolation on straight lines between its points, logarithm of bytes over PSNR; "-" stands
         where that curve does not reach. *Nearest* is the point of the whole method that is nearest
         in PSNR, with the differences to it. *BD-rate* is the mean change of rate over the PSNR that
-        both curves share. With four points each it is Bjontegaard's, on cubics; with fewer it is
+        both curves share; it is the rate by which bars, charts and texts compare. With four points each it is Bjontegaard's, on cubics; with fewer it is
         marked "lines" and exact on straight lines, with both curves through the same λ, because a
-        straight line between far points lies below a bent curve. Bold lines are means over the
-        variant's runs. Positive rates and negative PSNR mean that the variant is worse. *Paper* is
+        straight line between far points lies below a bent curve. Bold lines hold the BD-rate, and
+        the means of the other differences over the variant's runs. Positive rates and negative PSNR mean that the variant is worse. *Paper* is
         its table of ablations: Neu3D at its highest rate, same λ. *Within seeds* means that the
         difference in PSNR at equal bytes is less than the spread of three seeds of the whole method
         on that scene.""")
@@ -90,8 +90,8 @@ def rows(page, runs, scene, variant):
             page.row_missing(run.tag, changed, run.weight)
     change = Change(runs, scene, variant)
     if change.runs:
-        page.row(f"**{variant}**", "", "", "", "", signed(change.rate, 1, " %"),
-                 signed(change.psnr, 2, " dB"), change.near_words(), change.bd_rate(),
+        page.row(f"**{variant}**", "", "", "", "", "",
+                 signed(change.psnr, 2, " dB"), change.near_words(), change.bd_rate_text(),
                  PAPER.get(variant, ""), verdict(variant, change.worse)
                  + ("; within seeds" if within_seeds(runs, scene, change) else ""))
 
@@ -145,7 +145,7 @@ def scene_chart(report, scene):
 
 
 def overview(report):
-    """All variants at a glance: rate at equal PSNR and PSNR at equal bytes."""
+    """All variants at a glance: BD-rate and PSNR at equal bytes."""
     runs, dots = report.runs, Dots(report.styles)
     variants = [variant for variant in runs.variants
                 if any(runs.wants(scene, variant, "variant") for scene in runs.scenes)]
@@ -157,7 +157,7 @@ def overview(report):
         with report.charts.open("variants", 900, dots.height() + 96,
                                 "Variants against the whole method") as svg:
             dots.legend(svg, 180, 14)
-            dots.draw(svg, 170, 40, 340, 1, "rate at equal PSNR, % (right: worse)", names=True)
+            dots.draw(svg, 170, 40, 340, 1, "BD-rate, % (right: worse)", names=True)
             dots.draw(svg, 530, 40, 360, 2, "PSNR at equal bytes, dB (left: worse)")
     report.tables.heading("All variants", 3)
     show_overview(report, report.tables)
@@ -172,7 +172,7 @@ def variant_dots(runs, dots, variant):
     changes = [(scene, Change(runs, scene, variant)) for scene in runs.scenes
                if runs.wants(scene, variant, "variant")]
     found = sum(change.runs > 0 for _, change in changes)
-    for panel, number in ((1, Change.one_rate), (2, lambda change: change.psnr)):
+    for panel, number in ((1, lambda change: change.bd_rate), (2, lambda change: change.psnr)):
         for scene, change in changes:
             dots.value(panel, number(change), scene)
         if all(number(change) is None for _, change in changes):
