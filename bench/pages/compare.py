@@ -3,11 +3,7 @@ SPDX-License-Identifier: BSD-2-Clause"""
 import math
 
 from . import curves
-from .rows import mark
-from .words import fixed, signed
-
-# Student's t of which 95 % lie below, for 1 to 9 degrees of freedom.
-STUDENT = (6.31, 2.92, 2.35, 2.13, 2.02, 1.94, 1.89, 1.86, 1.83)
+from .words import signed
 
 
 def base_of(variant):
@@ -60,6 +56,7 @@ def mean(values):
 class Change:
     """Of a variant on a scene, from those of its runs that are there:
 
+    base                  what it is compared with
     runs                  how many
     rate, psnr            means of rate_change and psnr_change over the runs that the curve reaches
     near_psnr, near_rate  mean differences to the nearest points, dB and percent
@@ -70,7 +67,7 @@ class Change:
     worse                 than the base: True, False, or None: it cannot be said"""
 
     def __init__(self, runs, scene, variant, against=None):
-        base = against or base_of(variant)
+        self.base = base = against or base_of(variant)
         near = [(run, nearest(runs, run, base)) for run in runs.present(scene, variant)]
         near = [(run, other) for run, other in near if other is not None]
         self.runs = len(near)
@@ -135,72 +132,3 @@ def within_seeds(runs, scene, change):
     seeds were not run, or the curve does not reach."""
     spread = seed_spread(runs, scene)
     return change.psnr is not None and spread is not None and abs(change.psnr) < spread["psnr"]
-
-
-class Seeded:
-    """A variant against its base, seed by seed, at equal bytes: runs SCENE-VARIANT-2,
-    SCENE-VARIANT_seed2-2, ... of the group "seeded" against the whole method's; those of the group
-    "recipe" against SCENE-recipe-2, SCENE-recipe_seed2-2, ...
-
-    changes: by seed, dB; None when one is missing, or there is one seed alone."""
-
-    def __init__(self, runs, scene, variant):
-        self.is_recipe = variant.startswith("recipe_")
-        group = "recipe" if self.is_recipe else "seeded"
-        self.pairs = []
-        for seed in range(1, 11):
-            run = seeded_run(runs, scene, variant, seed)
-            if not run.in_group(group):
-                break
-            self.pairs.append((run, seeded_run(runs, scene, "recipe", seed) if self.is_recipe
-                               else whole_run(runs, scene, seed)))
-        self.base = "recipe" if self.is_recipe else "whole"
-        self.curve = runs.of(scene, self.base)
-        self.changes = [self.change(runs, *pair) for pair in self.pairs]
-        if len(self.changes) < 2 or None in self.changes:
-            self.changes = None
-            return
-        n = len(self.changes)
-        total, square = sum(self.changes), sum(c * c for c in self.changes)
-        self.mean = total / n
-        self.error = (math.sqrt((square - total * total / n) / (n - 1) / n)
-                      if square * n > total * total else 0)
-
-    def change(self, runs, run, other):
-        """PSNR of a run less that of another, had both as many bytes: along the curve of the base
-        at seed 1. None where one is missing or the curve does not reach."""
-        if not run.has() or not other.has():
-            return None
-        of_run, of_other = (psnr_change(runs, one, self.base) for one in (run, other))
-        return None if of_run is None or of_other is None else of_run - of_other
-
-    def is_worse(self):
-        """Whether the mean lies farther from zero than chance puts it once in twenty on that side:
-        True worse, False better, "?" there is no saying, as without changes."""
-        if self.changes is None:
-            return "?"
-        limit = STUDENT[len(self.changes) - 2] * self.error
-        return True if self.mean < -limit else False if self.mean > limit else "?"
-
-    def verdict(self):
-        return {True: "worse", False: "better", "?": "no saying"}[self.is_worse()]
-
-    def by_seed(self):
-        return ", ".join(signed(change, 2) for change in self.changes)
-
-    def mean_text(self):
-        return signed(self.mean, 2) + " ± " + fixed(self.error, 2)
-
-    def mark(self):
-        """Of all rows that the changes come from."""
-        return mark(self.curve + [run for pair in self.pairs for run in pair])
-
-
-def seeded_run(runs, scene, variant, seed):
-    return runs.find(f"{scene}-{variant}{'' if seed == 1 else f'_seed{seed}'}-2")
-
-
-def seeded_variants(runs, group):
-    """(scene, variant) of the runs with a seed 1 of a group."""
-    return [(scene, variant) for scene in runs.scenes for variant in runs.variants
-            if "_seed" not in variant and seeded_run(runs, scene, variant, 1).in_group(group)]

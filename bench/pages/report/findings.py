@@ -3,10 +3,12 @@
 A finding is a function of the report; it returns its text and the runs behind it, or None while one
 of them is missing.
 SPDX-License-Identifier: BSD-2-Clause"""
-from ..compare import Change, Seeded, seed_spread, whole_run
+from ..compare import Change, seed_spread, whole_run
 from ..rows import mark
+from ..seeded import Seeded
 from ..words import anchor, fixed
-from . import estimate, lives, precision, singles
+from . import estimate, lives, precision, singles, variant_bars
+from .held_out import counted, held_out
 
 SCENE = "kitchen"
 
@@ -28,6 +30,16 @@ def compared(seeded):
     """The mean over seeds with its standard error."""
     return (f"{abs(seeded.mean):.2f} ± {seeded.error:.2f} dB "
             f"{'worse' if seeded.mean < 0 else 'better'}")
+
+
+def together(report, *compared_over_seeds):
+    """What belongs to such a sentence where not all of its differences hold among all comparisons
+    of the report."""
+    if all(report.family.is_worse(seeded) != "?" for seeded in compared_over_seeds):
+        return ""
+    return (f"; among the report's {report.family.count} comparisons over seeds, "
+            + ("this could be chance" if len(compared_over_seeds) == 1 else
+               "these differences could be chance"))
 
 
 def rate(report):
@@ -55,7 +67,7 @@ def activation(report):
     more = ""
     if recipe.changes:
         more = (" The paper's recipe alone, which grows no short-lived anchors there, is "
-                f"{compared(recipe)} without them.")
+                f"{compared(recipe)} without them{together(report, recipe)}.")
     return (f"Without life spans of anchors `{SCENE}` {loses(change.psnr)} at equal bytes.{more}",
             runs.of(SCENE, "noactive") + runs.of(SCENE, "whole")
             + [run for pair in recipe.pairs for run in pair])
@@ -69,7 +81,7 @@ def deformation(report):
     return ("In the paper's recipe alone, a network of place and time as wide as F_deform is "
             f"{compared(recipe)} than the bank of motions on `{SCENE}` ({len(recipe.changes)} "
             "seeds). Beside multi-view seeding, which does much of the same work, it is "
-            f"{compared(seeded)}.",
+            f"{compared(seeded)}{together(report, seeded, recipe)}.",
             [run for one in (seeded, recipe) for pair in one.pairs for run in pair])
 
 
@@ -188,15 +200,33 @@ def section(report, page):
         page.item(f"**{name}.** {text} ({link})", f"{number}. ")
 
 
+def ground(report):
+    """What the verdicts on variants rest on, and what other scenes say."""
+    found = held_out(report, SCENE)
+    text = (f"What each part is worth (bar 1) is judged on one scene, `{SCENE}`, by "
+            + (counted(found[0], "held-out camera") if found else "an unknown number of cameras")
+            + "; more held-out cameras would need new trainings. " + report.family.holds())
+    both = {scene: variant_bars.signs(report.runs, SCENE, scene) for scene in report.runs.scenes
+            if scene != SCENE}
+    agreeing = [f"{sum(a == b for a, b in pairs)} of {len(pairs)} on `{scene}`"
+                for scene, pairs in both.items() if pairs]
+    if agreeing:
+        text += (" Other scenes have some of these variants, most at one seed; the difference has "
+                 f"the same sign there for {', '.join(agreeing)}.")
+    return text
+
+
 def open_section(report, page):
     """What was promised, and missed or left open."""
     bars = report.bars
     page.heading("What was promised and not met")
     page.prose(bars.summary("report-tables.md"))
+    page.prose(ground(report))
     page.prose("""[All bars](report-tables.md#bars). [Notes](#notes) tell what stands behind those
         that are not met:""")
     page.say()
     for wanted in ("**missed**", "cannot be said", "not run yet"):
         for row in bars.rows:
             if row.verdict == wanted:
-                page.item(f"{row.said}: {row.what} (asked: {row.limit})")
+                page.item(f"{row.verdict}: {row.what} (asked: {row.limit}"
+                          f"{row.said[len(row.verdict):]})")

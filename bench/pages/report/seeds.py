@@ -1,10 +1,11 @@
 """The spread that the seed alone makes: bar 11; and small differences over seeds.
 SPDX-License-Identifier: BSD-2-Clause"""
 from ..bars import DELIVERED
-from ..compare import Seeded, seed_spread, seeded_variants, whole_run
+from ..compare import seed_spread, whole_run
 from ..plot import Plot, panels
 from ..rows import mark
-from ..words import cells, fixed, signed
+from ..seeded import Seeded, seeded_variants
+from ..words import cells, fixed, percent, signed
 from .context import sweep
 from .rate import KB
 from .variants import PAPER
@@ -73,16 +74,27 @@ def seeded_section(report):
     page.prose("""Variants that differ from the whole method by no more than seeds do are trained
         with several seeds, each against the whole method at the same seed, λ 0.002. The table shows
         PSNR at equal bytes, along the curve of the whole method, and the mean with its standard
-        error. Negative numbers mean that the variant is worse. *No saying*: chance alone makes such
-        a mean more often than once in twenty (Student's t, one side).""")
-    page.table("scene", "variant", "by seed", "mean dB", "verdict")
+        error. Negative numbers mean that the variant is worse. *Chance*: how often chance alone
+        makes a mean as far from zero, on either side (Student's t). *Alone*: the verdict when no
+        other comparison is made; *no saying* where chance makes such a mean on that side more often
+        than once in twenty. *Together*: the verdict when all comparisons of this table and the next
+        are judged together, so that with a chance of 5 % at most one of them or more is wrong
+        (Holm's correction, either side). """ + report.family.holds())
+    page.table("scene", "variant", "by seed", "mean dB", "chance", "alone", "together")
     for scene, variant in seeded_variants(runs, "seeded"):
         seeded = Seeded(runs, scene, variant)
         if seeded.changes:
             page.row(scene, variant + seeded.mark(), seeded.by_seed(), seeded.mean_text(),
-                     seeded.verdict())
+                     *verdicts(report, seeded))
         else:
             page.row_missing(scene, variant)
+
+
+def verdicts(report, seeded):
+    """How often chance makes such a mean, the verdict alone, and that among all comparisons."""
+    words = {True: "worse", False: "better", "?": "no saying"}
+    return (percent(2 * seeded.tail, 1), words[seeded.is_worse_alone()],
+            words[report.family.is_worse(seeded)])
 
 
 def recipe_section(report):
@@ -94,14 +106,15 @@ def recipe_section(report):
         (sprouts), transients or probe. Each seed is compared with the recipe at the same seed and
         λ, as in the paper's table: PSNR, bytes; their means; and the mean of PSNR at equal bytes,
         along the recipe's own curve of three λ, with its standard error.""")
-    page.table("scene", "changed", "by seed", "mean", "at equal bytes", "verdict", "paper")
+    page.table("scene", "changed", "by seed", "mean", "at equal bytes", "chance", "alone",
+               "together", "paper")
     for scene, variant in seeded_variants(runs, "recipe"):
         if variant != "recipe":
-            recipe_row(page, runs, scene, variant)
+            recipe_row(report, scene, variant)
 
 
-def recipe_row(page, runs, scene, variant):
-    changed = variant[len("recipe_"):]
+def recipe_row(report, scene, variant):
+    page, runs, changed = report.tables, report.runs, variant[len("recipe_"):]
     seeded = Seeded(runs, scene, variant)
     if not all(run.has() and base.has() for run, base in seeded.pairs):
         page.row_missing(scene, changed)
@@ -112,7 +125,7 @@ def recipe_row(page, runs, scene, variant):
     mean = (sum(psnr / n for psnr, _ in both), sum(rate / n for _, rate in both))
     page.row(scene, changed + seeded.mark(), "; ".join(change_text(pair) for pair in both),
              change_text(mean), seeded.mean_text() + " dB" if seeded.changes else "-",
-             seeded.verdict() if seeded.changes else "-", PAPER.get(changed, ""))
+             *(verdicts(report, seeded) if seeded.changes else "---"), PAPER.get(changed, ""))
 
 
 def change_text(change):

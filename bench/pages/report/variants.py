@@ -48,11 +48,12 @@ def explain(page):
         interpolation on straight lines between its points, logarithm of bytes over PSNR; "-" stands
         where that curve does not reach. *Nearest* is the point of the whole method that is nearest
         in PSNR, with the differences to it. *BD-rate* is the mean change of rate over the PSNR that
-        both curves share; it is the rate by which bars, charts and texts compare. With four points each it is Bjontegaard's, on cubics; with fewer it is
-        marked "lines" and exact on straight lines, with both curves through the same λ, because a
-        straight line between far points lies below a bent curve. Bold lines hold the BD-rate, and
-        the means of the other differences over the variant's runs. Positive rates and negative PSNR mean that the variant is worse. *Paper* is
-        its table of ablations: Neu3D at its highest rate, same λ. *Within seeds* means that the
+        both curves share; it is the rate by which bars, charts and texts compare. With four points
+        each it is Bjontegaard's, on cubics; with fewer it is marked "lines" and exact on straight
+        lines, with both curves through the same λ, because a straight line between far points lies
+        below a bent curve. Bold lines hold the BD-rate, and the means of the other differences over
+        the variant's runs. Positive rates and negative PSNR mean that the variant is worse. *Paper*
+        is its table of ablations: Neu3D at its highest rate, same λ. *Within seeds* means that the
         difference in PSNR at equal bytes is less than the spread of three seeds of the whole method
         on that scene.""")
     page.prose("""*factorised_flat* is one Gaussian per component for all anchors, and *factorised*

@@ -1,0 +1,117 @@
+#!/bin/sh
+# test_report_bars.sh - what stands beside the verdicts of the report (bench/pages): the first
+# definition of a bar that changed, what is delivered, and differences over seeds that are judged
+# together. Prints lines as a cmocka program does; run by `make test` from the project's root.
+# SPDX-License-Identifier: BSD-2-Clause
+set -u
+. tests/support/speak.sh
+need report_bars python3
+
+# Student's t that 95 % lie below, from printed tables, for 1 to 6, 9 and 30 degrees of freedom; and
+# Holm's example of three that hold of four: 0.01, 0.012 and 0.02 lie below a quarter, a third and a
+# half of 0.05; 0.06 does not. The order counts: 0.03 fails against a half, and 0.04 with it.
+python3 - >"$out/said" 2>&1 <<END && ok significance || fail significance "$(cat "$out/said")"
+from bench.pages.significance import holm, student_tail
+printed = {1: 6.3138, 2: 2.9200, 3: 2.3534, 4: 2.1318, 5: 2.0150, 6: 1.9432, 9: 1.8331, 30: 1.6973}
+for freedom, t in printed.items():
+    assert abs(student_tail(t, freedom) - 0.05) < 1e-5, (freedom, student_tail(t, freedom))
+    assert abs(student_tail(-t, freedom) - 0.95) < 1e-5
+    assert abs(student_tail(0, freedom) - 0.5) < 1e-12
+assert holm({"a": 0.01, "b": 0.012, "c": 0.02, "d": 0.06}) == {"a", "b", "c"}
+assert holm({"a": 0.04, "b": 0.03, "c": 0.01}) == {"c"}
+assert holm({"a": 0.02, "b": 0.03}) == {"a", "b"} and holm({}) == set()
+END
+
+cat >"$out/table.txt" <<END
+lambdas 0.001 0.002 0.004
+base    --preset fast --seed 1
+scene kitchen         kitchen
+scene tint            kitchen_tint
+scene tint_by_kitchen kitchen
+scene walk            walk
+scene dog             dog
+scene still           still
+scene chair           chair
+run rd+tint whole    kitchen 1,2,3 -
+run rd      whole    walk,dog,still,chair 2 spans
+run still   static   still,chair 2 - --set motion=0
+run tint    fast     kitchen,tint_by_kitchen 2 -
+run tint    colour   tint 2 -
+run tint    nocolour tint 2 - --set colour=0
+run variant concat   kitchen 1 - --set motion=2
+run variant inr      kitchen 1 - --set motion=3
+run seed    seed2    kitchen 2 - --seed 2
+run seed    seed3    kitchen 2 - --seed 3
+END
+for seed in 1 2 3; do
+    for variant in concat inr; do
+        if [ $seed = 1 ]; then name=$variant; else name=${variant}_seed$seed; fi
+        echo "run seeded $name kitchen 2 - --seed $seed --set variant=$variant"
+    done
+done >>"$out/table.txt"
+# The whole method doubles its bytes with each dB. At equal bytes concat is 0.1, 0.101 and 0.102 dB
+# worse, so that a chance of 0.005 % is left, and inr 0.08, 0.1 and 0.12 dB, with 1.3 %: two
+# comparisons, of which both hold. tint is 0.2 dB below kitchen by its pictures, 0.7 dB by its own.
+rows() {
+    cat <<END
+kitchen-whole-1,k,o,31,200000,,,,,
+kitchen-whole-2,k,o,30,100000,0.3,0.1,0.6,0.5,0.01
+kitchen-whole-3,k,o,29,50000,,,,,
+kitchen-seed2-2,k,o,30,100000,,,,,
+kitchen-seed3-2,k,o,30.5,100000,,,,,
+kitchen-concat-1,k,o,30.9,200000,,,,,
+kitchen-inr-1,k,o,30.9,200000,,,,,
+kitchen-concat-2,k,o,29.9,100000,,,,,
+kitchen-concat_seed2-2,k,o,29.899,100000,,,,,
+kitchen-concat_seed3-2,k,o,30.398,100000,,,,,
+kitchen-inr-2,k,o,29.92,100000,,,,,
+kitchen-inr_seed2-2,k,o,29.9,100000,,,,,
+kitchen-inr_seed3-2,k,o,$1,100000,,,,,
+kitchen-fast-2,k,o,30.7,100000,,,,,
+tint_by_kitchen-fast-2,k,o,30.2,100000,,,,,
+tint-colour-2,k,o,30,100000,,,,,
+tint-nocolour-2,k,o,28.5,100000,,,,,
+walk-whole-2,k,o,30,100000,0,0.1,0.9,,
+dog-whole-2,k,o,30,100000,0,0.4,0.6,,
+still-whole-2,k,o,30,100000,,,,,
+still-static-2,k,o,30,100000,,,,,
+chair-whole-2,k,o,30,100000,,,,,
+chair-static-2,k,o,30,$2,,,,,
+END
+}
+make_report() {
+    { echo tag,key,options,psnr,bytes,span_short,span_between,span_long,short_changed,short_same
+      rows "$@"; } >"$out/sweep.csv"
+    rows "$@" | sed 's/\([^,]*\),.*/done \1/' >"$out/states"
+    TED4_RESULTS=$out TED4_PAGES=$out TED4_TABLE=$out/table.txt \
+        python3 -m bench.pages report "$out/states"
+}
+mkdir "$out/charts"
+: >"$out/charts/spans-kitchen-whole-2.jpg"
+: >"$out/charts/spans-dog-whole-2.jpg"
+make_report 30.38 100000 || { fail run "status $?"; exit 1; }
+page=$out/report-tables.md
+check first_tint "$page" \
+    'judged by the held-out pictures of kitchen_tint | within 0.5 dB | -0.20 dB | met; as first' \
+    '| met | each scene judged by its own held-out pictures, within 0.5 dB | -0.70 dB | **missed** |'
+check first_lives "$page" 'fast (kitchen): 30.0 / 10.0 / 60.0 %, light' \
+    'fast (walk): 0.0 / 10.0 / 90.0 %; slow (kitchen): 30.0 / 10.0 / 60.0 % | **missed** |'
+grep -q '^| 6 .*| met; as first defined: \*\*missed\*\* |' "$page" && ok lives ||
+    fail lives "$(grep '^| 6 ' "$page")"
+check delivered "$page" 'begins again without time | delivered |' \
+    '0.500 dB, 0.00 % of bytes | delivered |' 'Bars: 5 met, 0 missed, 18 not run yet, 3 delivered.'
+# The chances by 1 - t / sqrt(2 + t^2), with t 175 and 8.66.
+check together "$page" \
+    '| kitchen | concat | -0.10, -0.10, -0.10 | -0.10 ± 0.00 | 0.0 % | worse | worse |' \
+    '| -0.08, -0.10, -0.12 | -0.10 ± 0.01 | 1.3 % | worse | worse |' \
+    'unknown held-out cameras, 3 seeds | met; as first defined: met |'
+
+# At the third seed inr is 0.2 dB worse: t is 3.41, the chance 7.6 % on both sides and half of it on
+# one. chair differs by 1 %.
+echo 'scene,cameras,pictures
+kitchen,2,1' >"$out/held-out.csv"
+make_report 30.3 101000 || fail run "status $?"
+check not_together "$page" '| -0.08, -0.10, -0.20 | -0.13 ± 0.04 | 7.6 % | worse | no saying |' \
+    'rests on 1 scene, 2 held-out cameras (1 picture), 3 seeds | cannot be said; met when judged alone, not among the 2 comparisons over seeds; as first defined: met |'
+check not_delivered "$page" 'chair: -0.99 % | met |'
+exit $bad
