@@ -17,13 +17,14 @@ SCENES, VARIANTS = 16, 6
 
 
 class Lab:
-    """variants: those of the lab, in the order of the table."""
+    """scenes, variants: those of the lab, in the order of the table."""
 
     def __init__(self, runs, charts, notes, results):
         self.runs, self.charts, self.notes, self.results = runs, charts, notes, results
         self.unread = dict(notes)
+        self.scenes = [scene for scene in runs.scenes if runs.wants(scene, "whole", "lab")]
         self.variants = [variant for variant in runs.variants
-                         if any(runs.wants(scene, variant, "lab") for scene in runs.scenes)]
+                         if any(runs.wants(scene, variant, "lab") for scene in self.scenes)]
         self.page, self.bars = Page(), Bars()
         self.failures = self.unexplained = 0
 
@@ -35,7 +36,7 @@ class Lab:
 
     def in_group(self, group):
         """Scenes whose whole method belongs to a group."""
-        return [scene for scene in self.runs.scenes if self.runs.wants(scene, "whole", group)]
+        return [scene for scene in self.scenes if self.runs.wants(scene, "whole", group)]
 
     def note(self, scene, variant):
         """"" when there is none."""
@@ -56,6 +57,7 @@ def write(runs, charts, results, _):
     tables.quality_section(lab)
     tables.failure_section(lab)
     tables.out_section(lab)
+    tables.points_section(lab)
     tables.numbers_section(lab)
     tables.strip_section(lab)
     tables.command_section(lab)
@@ -83,7 +85,7 @@ def has_three(cell):
 
 def run_bars(lab):
     """1: enough of it ran; the whole method does not break; what is weak is explained."""
-    all_cells = [lab.cells(scene) for scene in lab.runs.scenes]
+    all_cells = [lab.cells(scene) for scene in lab.scenes]
     complete = sum(all(map(has_three, cells)) for cells in all_cells)
     rows = sum(len(cell.there) for cells in all_cells for cell in cells)
     wanted = sum(len(cell.wanted) for cells in all_cells for cell in cells)
@@ -91,7 +93,7 @@ def run_bars(lab):
     lab.bars.add(1, "what ran", "at least 16 scenes x 3 seeds x 6 variants",
                  f"{complete} scenes whole, with {len(lab.variants)} variants; {rows} of {wanted} "
                  "rows", DELIVERED if enough and len(lab.variants) >= VARIANTS else None, command())
-    whole = [lab.cell(scene, "whole") for scene in lab.runs.scenes]
+    whole = [lab.cell(scene, "whole") for scene in lab.scenes]
     broken = sum(cell.breaks(rule) for cell in whole
                  for rule in ("crash", "error", "nan", "diverges"))
     lab.bars.add(1, "whole method: crash, error, NaN, divergence", "none",
@@ -183,7 +185,7 @@ def seed_bars(lab):
                  else True if all(map(has_three, easy)) else None, command("easy"),
                  first_easy(lab))
     again = [(lab.runs.first(scene, "again"), lab.runs.first(scene, "whole"))
-             for scene in lab.runs.scenes if lab.runs.of(scene, "again")]
+             for scene in lab.scenes if lab.runs.of(scene, "again")]
     compared = [(a, b) for a, b in again
             if a.has() and b.has() and not a.is_old() and not b.is_old()]
     same = sum(a.text("hash") == b.text("hash") and a.text("bytes") == b.text("bytes")

@@ -12,7 +12,7 @@ LEFT, RIGHT, TOP, ROW = 130, 840, 58, 30    # pixels
 def draw(lab, name, title, label, column, factor=1, zero=False):
     """factor: what numbers are multiplied by. zero: the axis begins at 0. Nothing is drawn where no
     number is there."""
-    cells = [lab.cells(scene) for scene in lab.runs.scenes]
+    cells = [lab.cells(scene) for scene in lab.scenes]
     values = [value for row in cells for cell in row for value in cell.numbers(column)]
     if not values:
         return
@@ -21,7 +21,7 @@ def draw(lab, name, title, label, column, factor=1, zero=False):
         svg.write(LEFT, 22, title, "start", 14, "#111111", bold=True)
         legend(svg, lab.variants)
         x = Axis(factor * min(values), factor * max(values), LEFT, RIGHT, zero=zero)
-        area(svg, lab.runs.scenes, x, height, label)
+        area(svg, lab.scenes, x, height, label)
         middle = (len(lab.variants) - 1) / 2
         for k, row in enumerate(cells):
             for i, cell in reversed(list(enumerate(row))):

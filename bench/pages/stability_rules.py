@@ -65,7 +65,7 @@ class Cell:
 
     def is_weak(self):
         here = self.mean("psnr")
-        first = self.lab.cell(self.lab.runs.scenes[0], "whole").mean("psnr")
+        first = self.lab.cell(self.lab.scenes[0], "whole").mean("psnr")
         return here is not None and first is not None and first - here > WEAK_GAP
 
     def breaks(self, rule):

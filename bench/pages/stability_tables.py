@@ -3,7 +3,7 @@ whole method's runs measured, failures with their causes, strips, commands.
 SPDX-License-Identifier: BSD-2-Clause"""
 from .rows import mark, own_options
 from .stability_rules import RULES
-from .words import cells, fixed, percent
+from .words import cells, fixed, percent, signed
 
 
 def quality_cell(cell):
@@ -28,7 +28,7 @@ def quality_section(lab):
     for letter, meaning in RULES.values():
         page.item(f"**{letter}**: {meaning}")
     page.table("scene", *lab.variants)
-    for scene in lab.runs.scenes:
+    for scene in lab.scenes:
         page.row(scene, *map(quality_cell, lab.cells(scene)))
     page.chart(lab.charts, "worst",
                "Worst held-out frame by scene and variant, mean and span over seeds")
@@ -47,7 +47,7 @@ def out_section(lab):
         scene (the longest side of the box between the 1st and the 99th percentile of its initial
         points). Both are means over seeds.""")
     page.table("scene", *lab.variants)
-    for scene in lab.runs.scenes:
+    for scene in lab.scenes:
         page.row(scene, *("-" if not cell.there else
                           f"{percent(cell.mean('out_share'), 2)}; "
                           f"{fixed(cell.mean('displacement'), 3)}{mark(cell.wanted)}"
@@ -65,6 +65,30 @@ def term_cell(cell, column):
     return f"{run.number(column):.3g} ({run.text(column + '_term')})"
 
 
+def points_section(lab):
+    """Scenes SCENE_sfm, of the group sfm, beside SCENE."""
+    page, runs = lab.page, lab.runs
+    wanted = [scene for scene in runs.scenes if runs.wants(scene, "whole", "sfm")]
+    if not wanted:
+        return
+    page.heading("Initial points as structure from motion gives them")
+    page.prose("""The initial points of the lab's scenes lie on true surfaces, of moving things too,
+        at all times, with true colours. Here the same scenes begin with a quarter as many points
+        (`--points sfm`): on what never moves only, less exact in depth, and with the tint of the
+        camera that sees them. The table shows PSNR in dB of the whole method: mean of all held-out
+        pictures / worst of all, as means over seeds.""")
+    page.table("scene", "on surfaces", "as structure from motion", "difference of the mean")
+    for scene in wanted:
+        twin = lab.cell(scene.removesuffix("_sfm"), "whole")
+        cell = lab.cell(scene, "whole")
+        if twin.mean("psnr") is None or cell.mean("psnr") is None:
+            page.row_missing(twin.scene)
+            continue
+        page.row(twin.scene, *(fixed(one.mean("psnr"), 2) + " / " + fixed(one.mean("worst"), 2)
+                               + mark(one.wanted) for one in (twin, cell)),
+                 signed(cell.mean("psnr") - twin.mean("psnr"), 2))
+
+
 def numbers_section(lab):
     page = lab.page
     page.heading("What the whole method's runs measured")
@@ -79,7 +103,7 @@ def numbers_section(lab):
     page.table("scene", "bytes", "anchors", "moving", "dead", "escapes", "ends: symbols", "steps",
                "contexts", "sigma", "widths", "clamped", "not finite", "loss", "largest gradient",
                "peak", "rollbacks", "training s of CPU")
-    for scene in lab.runs.scenes:
+    for scene in lab.scenes:
         cell = lab.cell(scene, "whole")
         if cell.there:
             numbers_row(page, cell)
@@ -119,7 +143,7 @@ def failure_section(lab):
         [stability-notes.md](stability-notes.md).""")
     page.table("scene", "variant", "what fails", "cause and mend")
     for variant in lab.variants:
-        for scene in lab.runs.scenes:
+        for scene in lab.scenes:
             cell = lab.cell(scene, variant)
             if not cell.marks():
                 continue
@@ -128,7 +152,7 @@ def failure_section(lab):
             lab.unexplained += is_whole and not cause
             page.row(scene, variant, failure_words(cell),
                      cause or ("**unexplained**" if is_whole else "-"))
-    for scene in lab.runs.scenes:
+    for scene in lab.scenes:
         for i, variant in enumerate(lab.variants):
             if f"{scene} {variant}" in lab.unread or (i == 0 and f"{scene} *" in lab.unread):
                 page.prose(f"Of what no longer fails, on {scene}: {lab.note(scene, variant)}")
@@ -170,5 +194,5 @@ def command_section(lab):
     page.prose("Other seeds and variants differ by:")
     page.table("variant", "options")
     for variant in lab.variants:
-        options = own_options(runs, runs.first(runs.scenes[0], variant), ("set",))
+        options = own_options(runs, runs.first(lab.scenes[0], variant), ("set",))
         page.row(variant, options and f"`{options}`")

@@ -1,6 +1,5 @@
-/* ray_set.c - writes the pictures and points of a scene, and the folder. ray_layout.c writes the
- * other files of a layout.
- * SPDX-License-Identifier: BSD-2-Clause */
+/* ray_set.c - writes the pictures of a scene, and the folder. ray_layout.c writes the other files
+ * of a layout, and ray_points.c finds its points. SPDX-License-Identifier: BSD-2-Clause */
 #include "ray_layout.h"
 #include "ray_picture.h"
 #include "ray_shot.h"
@@ -15,10 +14,6 @@
 #include <unistd.h>
 
 enum { MAX_PATH = 1024 };
-/* Half the width of the noise added to the points, in units; it is two thirds of a default pixel at
- * the middle. */
-static const float point_noise = 0.015f;
-
 static const char truth_name[] = "truth.json";
 
 ted4_ray_options ted4_ray_defaults(ted4_ray_scene s)
@@ -191,78 +186,6 @@ static int write_pictures(const ted4_ray_options *o, const char *folder, const t
     }
     free(job.failure);
     return status;
-}
-
-/* ---- points ---- */
-
-/* Middle and half width of the space that the things occupy in the room. */
-static const vec3 things = { 0, 0.15f, 0.6f };
-static const float things_half = 0.9f;
-
-int ted4_ray_n_points(const ted4_ray_options *o)
-{
-    if (o->ways.points == RAY_NO_POINTS)
-        return 0;
-    return o->ways.points == RAY_BOX10 ? TED4_RAY_MANY_POINTS : TED4_RAY_POINTS;
-}
-
-/* Returns what a training camera sees at a random position in a listed picture, and sets the camera
- * and time of p. */
-static ted4_ray_sight random_sight(const ted4_ray_options *o, int i, int attempt, ted4_ray_point *p)
-{
-    const uint32_t seed = o->seed + 77;
-    ted4_ray_camera c;
-    ted4_ray_world w;
-
-    p->camera = (i + attempt) % o->n_train;
-    p->frame = (int)(ray_hash(i, 0, attempt, seed) % (uint32_t)o->n_frames);
-    p->frame += ted4_ray_is_held(o, p->frame);
-    if (!ted4_ray_is_taken(o, p->camera, p->frame))
-        return (ted4_ray_sight) { .depth = INFINITY };
-    ted4_ray_camera_of(o, p->camera, &c);
-    ted4_ray_world_of(o, p->frame, &w);
-    return ted4_ray_look(&w, &c, (double)ray_random(i, 1, attempt, seed) * c.width,
-                         (double)ray_random(i, 2, attempt, seed) * c.height);
-}
-
-static ted4_ray_point random_point(const ted4_ray_options *o, int i)
-{
-    const float half = things_half * (o->ways.points == RAY_BOX10 ? 10 : 1);
-    const uint32_t seed = o->seed + 78;
-    ted4_ray_point p = { .camera = -1 };
-    double room[3], file[3];
-    const vec3 from = v3(2 * ray_random(i, 0, 0, seed) - 1, 2 * ray_random(i, 1, 0, seed) - 1,
-                         2 * ray_random(i, 2, 0, seed) - 1);
-    const vec3 at = v3_along(things, from, half);
-
-    room[0] = (double)at.x, room[1] = (double)at.y, room[2] = (double)at.z;
-    ted4_ray_mapped(o, room, file);
-    p.point = v3((float)file[0], (float)file[1], (float)file[2]);
-    for (int k = 0; k < 3; k++)
-        p.rgb[k] = (uint8_t)(ray_hash(i, 3, k, seed) >> 24);
-    return p;
-}
-
-/* This ends because the first training camera always has things in view. */
-ted4_ray_point ted4_ray_point_at(const ted4_ray_options *o, int i)
-{
-    const uint32_t seed = o->seed + 77;
-    ted4_ray_point p;
-    ted4_ray_sight s;
-    int attempt = 0;
-
-    if (o->ways.points != RAY_ON_SURFACES)
-        return random_point(o, i);
-    do {
-        s = random_sight(o, i, attempt++, &p);
-    } while (!isfinite(s.depth));
-    ted4_ray_bytes(s.colour, p.rgb);
-    p.point = v3_along(s.point,
-                       v3(ray_random(i, 3, 0, seed) - 0.5f, ray_random(i, 4, 0, seed) - 0.5f,
-                          ray_random(i, 5, 0, seed) - 0.5f),
-                       2 * point_noise);
-    p.point = ted4_ray_point_stated(o, p.camera, p.point);
-    return p;
 }
 
 /* ---- the folder ---- */

@@ -8,9 +8,16 @@
  * room. The others remove them. */
 typedef enum { RAY_USUAL, RAY_ROOM, RAY_WHITE, RAY_BLACK, RAY_CLEAR } ted4_ray_background;
 
-/* On surfaces; 100,000 random points in a box ten times as wide as the things; none; 4,000 random
- * points in a box around the things. */
-typedef enum { RAY_ON_SURFACES, RAY_BOX10, RAY_NO_POINTS, RAY_ANYWHERE } ted4_ray_points;
+/* 4,000 on surfaces; 100,000 random points in a box ten times as wide as the things; none; 4,000
+ * random points in a box around the things; 1,000 as structure from motion finds them: on what
+ * never moves, less exact along the ray of a camera, with that camera's tint. */
+typedef enum {
+    RAY_ON_SURFACES,
+    RAY_BOX10,
+    RAY_NO_POINTS,
+    RAY_ANYWHERE,
+    RAY_MOTION_POINTS
+} ted4_ray_points;
 
 /* PNG of 8 bits, of 16 bits, grey, with a palette, interlaced; JPEG, also progressive. */
 typedef enum {

@@ -31,7 +31,9 @@ const ted4_argument ted4_scene_ways[TED4_SCENE_N_WAYS] = {
     [TURNS] = { 0, "turns", NULL, "one camera a time, each elsewhere; as many times as cameras" },
     [POINTS] = { 0, "points", "P",
                  "surface (default), box10 (100,000 at random in a box ten times as wide as the "
-                 "things), none, random (4,000 in a box about the things)" },
+                 "things), none, random (4,000 in a box about the things) or sfm (1,000 as "
+                 "structure from "
+                 "motion finds them: on still things, less exact, tinted)" },
     [UNIT] = { 0, "unit", "S", "coordinates in the files are S times as large" },
     [UP] = { 0, "up", "A", "y or z (default)" },
     [CENTRE] = { 0, "centre", "X,Y", "principal point, in widths and heights. Default 0.5,0.5" },

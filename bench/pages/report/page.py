@@ -2,8 +2,8 @@
 SPDX-License-Identifier: BSD-2-Clause"""
 from ..rows import mark
 from ..words import Page, cells, fixed
-from . import (bytes, estimate, findings, kept, lives, pictures, precision, progress, rate, seeds,
-               singles, speed, variant_bars, variants)
+from . import (bytes, estimate, findings, kept, lives, pictures, points, precision, progress, rate,
+               seeds, singles, speed, variant_bars, variants)
 from .context import Report
 
 SHOWN = "kitchen-whole-2"   # the run of the headline and of the picture
@@ -18,6 +18,7 @@ def write(runs, charts, results, pages):
     singles.medium_section(report)
     singles.tint_section(report)
     singles.still_section(report)
+    points.section(report)
     speed.section(report)
     bytes.section(report)
     lives.section(report)
