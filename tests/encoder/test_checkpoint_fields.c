@@ -1,6 +1,7 @@
 /* test_checkpoint_fields.c - train/monitor/checkpoint.c holds every number that a run needs when it
  * is resumed, those that only the program reports too: each is set to a value of its own by hand,
- * saved, and compared in a fresh trainer. Trainings that are resumed: test_trainer.c.
+ * saved, and compared in a fresh trainer. States that no training reaches are refused. Resumed
+ * trainings: test_trainer.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdlib.h>
 #include <string.h>
@@ -271,10 +272,121 @@ static void test_fields(void **state)
     }
 }
 
+/* ---- what a state cannot be ---- */
+
+static void put_held_out(ted4_trainer *t)
+{
+    t->order.item[0] = 3;
+}
+
+static void put_twice(ted4_trainer *t)
+{
+    t->order.item[0] = t->order.item[1];
+}
+
+static void put_beyond(ted4_trainer *t)
+{
+    t->order.item[0] = (uint32_t)scene.n_pictures;
+}
+
+static void end_order(ted4_trainer *t)
+{
+    t->order.next = t->order.n + 1;
+}
+
+static void leave_cube_above(ted4_trainer *t)
+{
+    *ted4_anchor_value(&t->anchors, TED4_ROW_POSITION, 5, 1) = 1.5f;
+}
+
+static void leave_cube_below(ted4_trainer *t)
+{
+    *ted4_anchor_value(&t->anchors, TED4_ROW_POSITION, 5, 1) = -1.5f;
+}
+
+static void train_too_long(ted4_trainer *t)
+{
+    t->iteration = ted4_trainer_total(t) + 1;
+}
+
+static void have_no_rate(ted4_trainer *t)
+{
+    t->monitor.state.factor = 0;
+}
+
+static void go_back_too_often(ted4_trainer *t)
+{
+    t->monitor.state.rollbacks = 4;
+}
+
+static void have_no_voxel(ted4_trainer *t)
+{
+    t->voxel = 0;
+}
+
+/* The hash of such a file is right, so that only the check of its contents can refuse it. Picture
+ * 3 is held out. */
+static void test_impossible(void **state)
+{
+    static void (*const spoil[])(ted4_trainer *) = {
+        put_held_out,     put_twice,      put_beyond,   end_order,         leave_cube_above,
+        leave_cube_below, train_too_long, have_no_rate, go_back_too_often, have_no_voxel
+    };
+
+    (void)state;
+    scene.pictures[3].is_test = 1;
+    for (size_t i = 0; i < sizeof spoil / sizeof spoil[0]; i++) {
+        ted4_trainer t, again;
+        ted4_snapshot s = { 0 };
+
+        begin(&t);
+        spoil[i](&t);
+        assert_int_equal(ted4_state_take(&t, &s), 0);
+        ball_begin(&again, &options, &scene, NULL);
+        if (ted4_state_restore(&again, &s) == 0)
+            fail_msg("impossible state %d was restored", (int)i);
+        ted4_trainer_finish(&t);
+        ted4_trainer_finish(&again);
+        ted4_snapshot_free(&s);
+    }
+    scene.pictures[3].is_test = 0;
+}
+
+/* Takes a state, changes a bit of the scene, and asserts that the state is refused as that of
+ * another scene. */
+static void check_other_scene(void *number)
+{
+    uint8_t *const byte = number;
+    ted4_trainer t;
+    ted4_snapshot s = { 0 };
+
+    ball_begin(&t, &options, &scene, NULL);
+    assert_int_equal(ted4_state_take(&t, &s), 0);
+    *byte ^= 1;
+    assert_int_equal(ted4_state_restore(&t, &s), -1);
+    assert_non_null(strstr(t.message.text, "other pictures, cameras, points or background"));
+    *byte ^= 1;
+    ted4_trainer_finish(&t);
+    ted4_snapshot_free(&s);
+}
+
+static void test_other_scene(void **state)
+{
+    (void)state;
+    check_other_scene(&scene.content);
+    check_other_scene(&scene.pictures[7].camera.fx);
+    check_other_scene(&scene.pictures[7].camera.t[1]);
+    check_other_scene(&scene.points[40]);
+    check_other_scene(&scene.point_rgb[40]);
+    check_other_scene(&scene.background[2]);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_fields),
+        cmocka_unit_test(test_impossible),
+        cmocka_unit_test(test_other_scene),
     };
 
     return cmocka_run_group_tests(tests, set_up, tear_down);
