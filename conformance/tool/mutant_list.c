@@ -52,6 +52,8 @@ static void take_line(conf_mutant_list *l, const char *path, const char *line)
         take_text(m->to, line);
     else if (m != NULL && line[0] == '=')
         take_text(m->why, line);
+    else if (m != NULL && line[0] == '!')
+        take_text(m->programs, line);
     else if (line[0] != '#' && line[0] != '\0')
         conf_die("%s: bad line: %s", path, line);
 }
@@ -109,9 +111,7 @@ void conf_mutant_list_free(conf_mutant_list *l)
     *l = (conf_mutant_list) { .m = NULL };
 }
 
-/* Returns a hash of the code of source files, without comments and spacing. files: words for a
- * shell. */
-static uint64_t code_of(const char *files)
+uint64_t conf_mutant_code_of(const char *files)
 {
     char command[CONF_PATH];
     const char *none[] = { NULL };
@@ -152,23 +152,28 @@ static uint64_t hash_of(const conf_entry *vector)
     return hash;
 }
 
-static void hash_ground(conf_mutant_list *l, const char *suite)
+static void hash_files(conf_mutant_list *l)
 {
-    conf_bytes all = { NULL, 0, 0 };
-    char folder[CONF_PATH];
-
     for (size_t i = 0; i < l->n; i++) {
         for (size_t j = 0; j < i && l->m[i].code == 0; j++)
             if (strcmp(l->m[i].file, l->m[j].file) == 0)
                 l->m[i].code = l->m[j].code;
         if (l->m[i].code == 0)
-            l->m[i].code = code_of(l->m[i].file);
+            l->m[i].code = conf_mutant_code_of(l->m[i].file);
     }
+}
+
+static void hash_vectors(conf_mutant_list *l, const char *suite)
+{
+    conf_bytes all = { NULL, 0, 0 };
+    char folder[CONF_PATH];
+
     conf_path(folder, "%s/vectors", suite);
     l->vector = conf_suite_load(folder, NULL, &l->n_vectors);
     conf_print(&all, "%016" PRIx64,
-               code_of("ref-decoder/base/*.[ch] ref-decoder/norm/*.[ch] ref-decoder/read/*.[ch] "
-                       "ref-decoder/recon/*.[ch]"));
+               conf_mutant_code_of(
+                   "ref-decoder/base/*.[ch] ref-decoder/norm/*.[ch] ref-decoder/read/*.[ch] "
+                   "ref-decoder/recon/*.[ch]"));
     for (size_t i = 0; i < l->n_vectors; i++)
         conf_print(&all, "%016" PRIx64, hash_of(&l->vector[i]));
     l->all = conf_seed((const char *)all.data);
@@ -176,16 +181,23 @@ static void hash_ground(conf_mutant_list *l, const char *suite)
 }
 
 /* Returns 0 if the vector that killed the mutant no longer exists. */
+static uint64_t ground_of_vectors(const conf_mutant_list *l, const conf_mutant *m)
+{
+    if (strcmp(m->verdict, "killed") != 0)
+        return l->all;
+    for (size_t i = 0; i < l->n_vectors; i++)
+        if (strcmp(l->vector[i].id, m->vector) == 0)
+            return hash_of(&l->vector[i]);
+    return 0;
+}
+
+/* Returns 0 if what killed the mutant no longer exists. */
 static uint64_t key_of(const conf_mutant_list *l, const conf_mutant *m)
 {
+    const uint64_t ground = l->ground != NULL ? l->ground(l, m) : ground_of_vectors(l, m);
     conf_bytes text = { NULL, 0, 0 };
-    uint64_t ground = 0, key;
+    uint64_t key;
 
-    if (strcmp(m->verdict, "killed") != 0)
-        ground = l->all;
-    for (size_t i = 0; i < l->n_vectors && ground == 0; i++)
-        if (strcmp(l->vector[i].id, m->vector) == 0)
-            ground = hash_of(&l->vector[i]);
     conf_print(&text, "%s|%s|%s|%016" PRIx64 "|%s|%016" PRIx64, m->file, m->from, m->to, m->code,
                m->verdict, ground);
     key = ground == 0 ? 0 : conf_seed((const char *)text.data);
@@ -226,8 +238,9 @@ void conf_mutant_results_read(conf_mutant_list *l, const char *suite)
     char path[CONF_PATH], row[ROW];
     FILE *f;
 
-    if (l->vector == NULL)
-        hash_ground(l, suite);
+    hash_files(l);
+    if (l->ground == NULL && l->vector == NULL)
+        hash_vectors(l, suite);
     conf_path(path, "%s/mutants.csv", suite);
     f = fopen(path, "r");
     while (f != NULL && fgets(row, sizeof row, f) != NULL) {

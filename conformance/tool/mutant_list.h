@@ -4,6 +4,8 @@
  *     < the line as it is, without its indentation
  *     > the line as it becomes
  *     = why no vector distinguishes it from the original, where that is known
+ *     ! PROGRAM ...    test programs that judge it, in this order, below tests/ (only where no
+ *                      vectors do: tests/mutants/encoder_mutants.c)
  * A row of mutants.csv is ID,KEY,VERDICT,VECTOR,BY. A result holds as long as its key matches. The
  * key covers the mutant's text, the code of its file without comments and spacing, and
  *     killed                   the vector that killed it: the hash of its file and its expected
@@ -20,18 +22,22 @@ enum { CONF_MUTANT_LINE = 400 };
 
 typedef struct {
     char id[64], file[200], from[CONF_MUTANT_LINE], to[CONF_MUTANT_LINE], why[CONF_MUTANT_LINE];
-    uint64_t code;             /* hash of the file's code */
+    uint64_t code; /* hash of the file's code */
+    char programs[CONF_MUTANT_LINE];
     char verdict[16];          /* "": no valid result; "killed", "survived", "no compile" */
-    char vector[96];           /* the vector that killed it */
+    char vector[96];           /* the vector, or the program, that killed it */
     char by[CONF_MUTANT_LINE]; /* the message of the replay */
 } conf_mutant;
 
-typedef struct {
+typedef struct conf_mutant_list {
     conf_mutant *m; /* owned */
     size_t n;
     uint64_t all;       /* hash of the decoder's code and of all vectors */
     conf_entry *vector; /* owned: the vectors of the suite */
     size_t n_vectors;
+    /* Returns the hash of what the verdict of m depends on besides the code of its file, or 0 if
+     * that no longer exists. NULL: the suite of vectors, as above. */
+    uint64_t (*ground)(const struct conf_mutant_list *l, const conf_mutant *m);
 } conf_mutant_list;
 
 /* *l must be all zero. Ends the program on a line of unknown kind, on a duplicate id, and on a text
@@ -42,6 +48,9 @@ void conf_mutant_list_free(conf_mutant_list *l);
  * Returns the number of occurrences. */
 int conf_mutant_apply(const conf_mutant *m, conf_bytes *out);
 
+/* Returns a hash of the code of source files, without comments and spacing. files: words for a
+ * shell, run in the project's root. Ends the program if there is no code in them. */
+uint64_t conf_mutant_code_of(const char *files);
 /* Computes the hashes that the keys need, then takes the verdicts of all rows that still hold. */
 void conf_mutant_results_read(conf_mutant_list *l, const char *suite);
 void conf_mutant_results_add(const conf_mutant_list *l, const conf_mutant *m, const char *suite);
