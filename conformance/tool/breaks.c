@@ -3,6 +3,7 @@
  *     do patch ELEMENT VALUE [WIDTH]       sets the bytes of an element. WIDTH: their number; if it
  *                                          is absent, the element ends where the next one begins
  *     do patch-all NAME VALUE              sets every entry of an array
+ *     do raise ELEMENT N                   adds N to an element
  *     do flip ELEMENT                      flips the lowest bit of the element's first byte
  *     do insert REF|end TYPE FLAGS N | text ... | hex XX...      inserts a chunk before another;
  *         its payload is N zeros, a text, or bytes
@@ -19,7 +20,8 @@
  *     do cut N | ELEMENT | chunk REF ...   ends the file at that offset; do append HEX
  *     do stream-grow | stream-set TILE SUB HEX; do stream-shrink TILE SUB N; do stream-patch TILE
  *     SUB OFFSET WIDTH VALUE
- *     do final TILE SUB                    adds 1 to the word that the coder reads last
+ *     do final TILE SUB [LANE]             adds 1 to the word that the coder reads last; with LANE,
+ *                                          to the initial state of that lane
  *     do value REF INDEX PATTERN           sets a value of the blob in REF, for `do pack` only; the
  *                                          file itself does not change
  *     do pack REF WAY FAULT                packs the blob's values again, with a fault
@@ -27,7 +29,8 @@
  *     do pack-zeros REF N                  packs a blob of N bytes of zeros
  *     do inject TILE SUB SYMBOL value K | escape E low|high | ones N      see inject.h
  *     do symbol TYPE COMP ANCHOR K         sets a symbol that contradicts another one
- * a symbol that contradicts another one SPDX-License-Identifier: BSD-2-Clause */
+ *
+ * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -89,6 +92,18 @@ static void patch(conf_stream *s, const conf_line *l)
     const conf_element *const e = conf_stream_element(s, l, l->word[2]);
 
     store(bytes_of(s, e), width_of(l, e), (uint32_t)conf_line_number(l, 3, INT32_MIN, UINT32_MAX));
+}
+
+static void raise_element(conf_stream *s, const conf_line *l)
+{
+    const conf_element *const e = conf_stream_element(s, l, l->word[2]);
+    const unsigned width = width_of(l, e);
+    uint8_t *const p = bytes_of(s, e);
+    uint32_t v = (uint32_t)conf_line_number(l, 3, INT32_MIN, UINT32_MAX);
+
+    for (unsigned i = 0; i < width; i++)
+        v += (uint32_t)p[i] << 8 * i;
+    store(p, width, v);
 }
 
 static void patch_all(conf_stream *s, const conf_line *l)
@@ -278,10 +293,13 @@ static void set_substream(conf_bytes *p, size_t at, size_t size, size_t size_at,
     conf_free(&more);
 }
 
-/* Changes the last word, or the low half of the state if there are no words. */
-static void spoil_final(uint8_t *substream, size_t size)
+/* Changes the state of the lane if there is one (lane >= 0), else the last word, or the low half of
+ * the state if there are no words. */
+static void spoil_final(uint8_t *substream, size_t size, long long lane)
 {
-    if (size > 4)
+    if (lane >= 0)
+        ted4_store32(substream + 4 * lane, ted4_load32(substream + 4 * lane) + 1);
+    else if (size > 4)
         ted4_store16(substream + size - 2, (uint16_t)(ted4_load16(substream + size - 2) + 1));
     else
         ted4_store32(substream, ted4_load32(substream) + 1);
@@ -312,7 +330,7 @@ static int stream_line(conf_stream *s, const conf_line *l, const char *what)
     } else if (strcmp(what, "stream-set") == 0) {
         set_substream(p, at, size, size_at, l);
     } else if (strcmp(what, "final") == 0) {
-        spoil_final(p->data + at, size);
+        spoil_final(p->data + at, size, l->n > 4 ? conf_line_number(l, 4, 0, 63) : -1);
     } else {
         store(p->data + at + (size_t)conf_line_number(l, 4, 0, (long long)size - 1),
               (unsigned)conf_line_number(l, 5, 1, 4),
@@ -415,6 +433,7 @@ static int plain_line(conf_stream *s, const conf_line *l, const char *what)
     } table[] = {
         { "patch", patch },
         { "patch-all", patch_all },
+        { "raise", raise_element },
         { "flip", flip },
         { "insert", insert },
         { "insert-many", insert_many },
