@@ -360,9 +360,8 @@ static int mutants(int argc, char **argv)
         "conformance-mutants).",
         mutants_table,
         MUTANTS_OPTIONS,
-        "Exit codes: 0 enough are killed, 1 not, 3 usage, a list that does not fit the sources, or "
-        "an unchanged decoder "
-        "that does not pass.\n",
+        "Exit codes: 0 enough are killed, 1 not, 3 usage, a list that does not fit the\n"
+        "sources, or an unchanged decoder that does not pass.\n",
         NULL
     };
     conf_mutant_options o = {

@@ -8,6 +8,8 @@
 #include <strings.h>
 #include <unistd.h>
 
+#include "leftovers.h"
+
 /* Makes the temporary name for path. Returns 0, or -1 with errno set if it is too long. */
 static int name_temporary(char out[TED4_PATH_SIZE], const char *path)
 {
@@ -24,8 +26,18 @@ int ted4_output_open(ted4_output *o, const char *path)
     if (name_temporary(o->temporary, path) != 0)
         return -1;
     memcpy(o->path, path, strlen(path) + 1);
+    ted4_leftovers_add(o->temporary, 0);
     o->file = fopen(o->temporary, "wb");
-    return o->file == NULL ? -1 : 0;
+    if (o->file != NULL)
+        return 0;
+    ted4_leftovers_forget(o->temporary);
+    return -1;
+}
+
+static void discard(const char *temporary)
+{
+    remove(temporary);
+    ted4_leftovers_forget(temporary);
 }
 
 void ted4_output_cancel(ted4_output *o)
@@ -33,7 +45,7 @@ void ted4_output_cancel(ted4_output *o)
     const int why = errno;
 
     fclose(o->file);
-    remove(o->temporary);
+    discard(o->temporary);
     errno = why;
 }
 
@@ -45,11 +57,13 @@ int ted4_output_close(ted4_output *o)
         ted4_output_cancel(o);
         return -1;
     }
-    if (fclose(o->file) == 0 && rename(o->temporary, o->path) == 0)
+    if (fclose(o->file) == 0 && rename(o->temporary, o->path) == 0) {
+        ted4_leftovers_forget(o->temporary);
         return 0;
+    }
     const int why = errno;
 
-    remove(o->temporary);
+    discard(o->temporary);
     errno = why;
     return -1;
 }

@@ -1,5 +1,5 @@
 /* output.h - output files of the programs: numbered names, and files that appear only when they are
- * complete.
+ * complete. A signal that ends the program leaves none where it watches for that (leftovers.h).
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_OUTPUT_H
 #define TED4_OUTPUT_H

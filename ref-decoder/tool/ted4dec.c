@@ -11,6 +11,7 @@
 #include "arguments.h"
 #include "cli.h"
 #include "contract.h"
+#include "leftovers.h"
 #include "threads.h"
 #include "output.h"
 #include "settings.h"
@@ -392,6 +393,7 @@ int main(int argc, char **argv)
 
     if (parsed >= 0)
         return parsed;
+    ted4_leftovers_watch();
     for (int i = optind; i < argc; i++) {
         set.input = argv[i];
         const int code = work(&set);

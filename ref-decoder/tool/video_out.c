@@ -9,6 +9,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "leftovers.h"
+
 /* Exit status of a child process that could not become ffmpeg. */
 enum { NO_FFMPEG = 127 };
 
@@ -57,6 +59,8 @@ int ted4_video_out_open(ted4_video_out *v, const char *path, int width, int heig
     v->child = fork();
     if (v->child == 0)
         become_ffmpeg(size, rate, to, ends[0], fileno(v->messages));
+    if (v->child > 0)
+        ted4_leftovers_add(v->temporary, v->child);
     close(ends[0]);
     v->pipe = ends[1];
     return 0;
@@ -109,5 +113,6 @@ int ted4_video_out_close(ted4_video_out *v, int keep, char *why, size_t why_size
     }
     if (bad || !keep)
         remove(v->temporary);
+    ted4_leftovers_forget(v->temporary);
     return bad ? -1 : 0;
 }

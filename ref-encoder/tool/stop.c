@@ -7,6 +7,8 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "tool/leftovers.h"
+
 static const int signals[] = { SIGINT, SIGTERM };
 enum { N_SIGNALS = (int)(sizeof signals / sizeof signals[0]) };
 
@@ -34,8 +36,10 @@ static void take(int signal)
         say("\nted4enc: stopped before training; nothing was written\n");
     else if (!again)
         say("\nted4enc: stopping after this step; once more ends at once\n");
-    if (!keeping || again)
+    if (!keeping || again) {
+        ted4_leftovers_remove();
         raise(signal);
+    }
     errno = before;
 }
 

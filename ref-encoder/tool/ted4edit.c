@@ -13,6 +13,7 @@
 #include "ted4.h"
 #include "tool/arguments.h"
 #include "tool/cli.h"
+#include "tool/leftovers.h"
 #include "tool/output.h"
 
 enum {
@@ -349,5 +350,8 @@ int main(int argc, char **argv)
     static settings s;
     const int code = parse(&s, argc, argv);
 
-    return code >= 0 ? code : run(&s);
+    if (code >= 0)
+        return code;
+    ted4_leftovers_watch();
+    return run(&s);
 }

@@ -24,6 +24,7 @@
 #include "ted4.h"
 #include "tool/arguments.h"
 #include "tool/cli.h"
+#include "tool/leftovers.h"
 #include "tool/output.h"
 #include "teller.h"
 #include "tool/threads.h"
@@ -463,6 +464,7 @@ int main(int argc, char **argv)
 
     if (code >= 0)
         return code;
+    ted4_leftovers_watch();
     ted4_teller_begin(&teller, "ted4eval", set.quiet);
     ted4_teller_say(&teller, "comparing %s with %s", set.input, set.scene);
     ted4_teller_now(&teller, &(ted4_facts) { .kind = TED4_TELL_LOADING, .name = "the scene" });

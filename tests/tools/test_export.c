@@ -4,8 +4,11 @@
 #include <dirent.h>
 #include <jansson.h>
 #include <math.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "test.h"
@@ -13,6 +16,7 @@
 #include "random_source.h"
 #include "temporary.h"
 #include "tool/export.h"
+#include "tool/leftovers.h"
 #include "tool/output.h"
 #include "tool/sh.h"
 
@@ -475,6 +479,59 @@ static void test_no_debris(void **state)
     assert_int_equal(ted4_export(&ted4_format_ply, &s.frame, path), -1);
 }
 
+/* A child begins a file, says so, and waits to be ended by the signal. */
+static void end_while_writing(int signal, int is_ignored)
+{
+    ted4_output o;
+    char path[256], said = 0;
+    int ends[2], status;
+
+    snprintf(path, sizeof path, "%s/x.ply", folder);
+    assert_int_equal(socketpair(AF_UNIX, SOCK_STREAM, 0, ends), 0);
+
+    const pid_t child = fork();
+
+    assert_true(child >= 0);
+    close(ends[child == 0 ? 0 : 1]);
+    if (child == 0) {
+        sigaction(signal, &(struct sigaction) { .sa_handler = is_ignored ? SIG_IGN : SIG_DFL },
+                  NULL);
+        ted4_leftovers_watch();
+        said = ted4_output_open(&o, path) == 0 && fputs("half", o.file) > 0 && !fflush(o.file);
+        if (write(ends[1], &said, 1) == 1 && is_ignored && read(ends[1], &said, 1) == 1)
+            _exit(ted4_output_close(&o) == 0 ? 0 : 1);
+        for (;;)
+            pause();
+    }
+    assert_int_equal(read(ends[0], &said, 1), 1);
+    assert_int_equal(said, 1);
+    assert_int_equal(count_files(), 1);
+    kill(child, signal);
+    if (is_ignored)
+        assert_int_equal(write(ends[0], &said, 1), 1);
+    assert_int_equal(waitpid(child, &status, 0), child);
+    if (is_ignored)
+        assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+    else
+        assert_true(WIFSIGNALED(status) && WTERMSIG(status) == signal);
+    close(ends[0]);
+}
+
+static void test_signals(void **state)
+{
+    char path[256];
+
+    (void)state;
+    for (int i = 0; i < 3; i++) {
+        end_while_writing((const int[]) { SIGINT, SIGTERM, SIGHUP }[i], 0);
+        assert_int_equal(count_files(), 0);
+    }
+    end_while_writing(SIGHUP, 1);
+    assert_int_equal(count_files(), 1);
+    snprintf(path, sizeof path, "%s/x.ply", folder);
+    assert_int_equal(remove(path), 0);
+}
+
 static int folder_make(void **state)
 {
     (void)state;
@@ -491,8 +548,10 @@ static int folder_remove(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_ply), cmocka_unit_test(test_raw),   cmocka_unit_test(test_splat),
-        cmocka_unit_test(test_glb), cmocka_unit_test(test_empty), cmocka_unit_test(test_no_debris),
+        cmocka_unit_test(test_ply),     cmocka_unit_test(test_raw),
+        cmocka_unit_test(test_splat),   cmocka_unit_test(test_glb),
+        cmocka_unit_test(test_empty),   cmocka_unit_test(test_no_debris),
+        cmocka_unit_test(test_signals),
     };
     return cmocka_run_group_tests(tests, folder_make, folder_remove);
 }

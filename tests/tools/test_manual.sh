@@ -22,11 +22,13 @@ runs() {
     if "$@" >"$out/said" 2>&1; then ok "$name"; else fail "$name" "$(cat "$out/said")"; fi
 }
 
-# page_options PAGE COMMAND...: those of the page are those of --help.
+# page_options PAGE COMMAND...: those of the page are those of --help, which fits a terminal.
 page_options() {
     page=$1; shift
-    "$TED4_BUILD/$@" --help | sed -n 's/^  \(-., \|    \)--\([a-z0-9-]*\).*/\2/p' |
-        sort >"$out/wanted"
+    "$TED4_BUILD/$@" --help >"$out/help"
+    if awk 'length > 80 { print; bad = 1 } END { exit bad }' "$out/help" >"$out/wide"
+    then ok "${page}_width"; else fail "${page}_width" "$(cat "$out/wide")"; fi
+    sed -n 's/^  \(-., \|    \)--\([a-z0-9-]*\).*/\2/p' "$out/help" | sort >"$out/wanted"
     [ -s "$out/wanted" ] || fail "$page" "the help text has no option"
     sed -n 's/^\.It .*Fl -\([a-z0-9-]*\).*/\1/p' "$man/$page.1" | sort >"$out/found"
     same "${page}_page" "$out/wanted" "$out/found"

@@ -53,6 +53,26 @@ PATH=$path
 expect missing 3 'videos need the program ffmpeg' env PATH="$out/none" "$dec" "$vector" \
     --render "$out/b.mp4" --camera "$out/two.json"
 equal nothing_left "$(ls "$out" | grep -c '^b.mp4')" 0
+
+# Killed while ffmpeg writes: neither it nor its half of a file stays.
+cat >"$out/bin/ffmpeg" <<'END'
+#!/bin/sh
+for last; do :; done
+echo half >"${last#file:}"
+echo $$ >"$KEEP/writer.new" && mv "$KEEP/writer.new" "$KEEP/writer"
+exec sleep 60
+END
+PATH=$out/bin:$path "$dec" "$vector" --render "$out/k.mp4" --camera "$out/two.json" -q &
+decoder=$!
+for _ in $(seq 600); do [ -e "$out/writer" ] || sleep 0.1; done
+equal half_written "$(ls "$out" | grep -c '^k.mp4.*part$')" 1
+kill -TERM $decoder
+wait $decoder
+equal killed "$?" 143
+equal no_half "$(ls "$out" | grep -c '^k.mp4')" 0
+if kill -0 "$(cat "$out/writer")" 2>/dev/null; then fail no_writer "ffmpeg goes on"
+else ok no_writer; fi
+
 if command -v ffmpeg >/dev/null; then
     "$dec" "$vector" --render "$out/real.mp4" --path "$out/two.json" --views 12 -q
     ffmpeg -v error -i "$out/real.mp4" -f rawvideo -pix_fmt rgb24 -y "$out/back" 2>"$out/err"

@@ -67,22 +67,23 @@ static void print_names(FILE *f)
     for (int s = 0; s < RAY_SCENES; s++) {
         const ted4_ray_plan *const p = ted4_ray_plan_of((ted4_ray_scene)s);
 
-        fprintf(f, "  %-8s  %s (%dx%d, %d + %d, %d, %d)\n", p->name, p->shows, p->width, p->height,
-                p->n_train, p->n_test, p->n_frames, p->hold);
+        fprintf(f, "  %-8s  %s\n            (%dx%d, %d + %d, %d, %d)\n", p->name, p->shows,
+                p->width, p->height, p->n_train, p->n_test, p->n_frames, p->hold);
     }
 }
 
 static const ted4_command COMMAND = {
     "ted4scene",
     "NAME -o FOLDER [options]",
-    "Makes a small synthetic dynamic scene. What is not given, and has no default here, is that\n"
-    "of the NAME in the list below. The file truth.json in the folder says what is held out or\n"
-    "disturbed.",
+    "Makes a small synthetic dynamic scene. What is not given, and has no default\n"
+    "here, is that of the NAME in the list below. The file truth.json in the folder\n"
+    "says what is held out or disturbed.",
     options,
     N_OPTIONS,
-    "--hold, --pose-error and --tint go with the layouts blender, nerfstudio and hypernerf, which\n"
-    "list what is held out; in others a NAME's hold is left out. The options from --background on\n"
-    "make files as other writers do; most of these go together, and the content stays the same.\n\n"
+    "--hold, --pose-error and --tint go with the layouts blender, nerfstudio and\n"
+    "hypernerf, which list what is held out; in others a NAME's hold is left out. The\n"
+    "options from --background on make files as other writers do; most of these go\n"
+    "together, and the content stays the same.\n\n"
     "Exit codes: 0 fine, 3 usage, input, output or resources.\n\n"
     "NAMEs, with picture size, training + test cameras, times, hold:\n",
     print_names,
