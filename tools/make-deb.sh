@@ -1,7 +1,8 @@
 #!/bin/sh
 # make-deb.sh FOLDER - builds the Debian packages of the last commit in a copy of it below FOLDER,
 # which is made anew, and leaves them there. It needs dpkg-dev, debhelper and what debian/control
-# names; it takes nothing from the network.
+# names; it takes nothing from the network. MAINTAINER in the environment, "NAME <ADDRESS>", takes
+# the place of the maintainer in debian/control and of who signs the last entry of the changelog.
 # SPDX-License-Identifier: BSD-2-Clause
 set -eu
 folder=$1
@@ -13,6 +14,15 @@ rm -rf "$folder"
 mkdir -p "$copy"
 git archive HEAD | tar -x -C "$copy"
 cd "$copy"
+if [ -n "${MAINTAINER:-}" ]; then
+    case $MAINTAINER in
+    *[\|\&\\]*) complain "MAINTAINER: no |, & or backslash, please" ;;
+    *" <"*@*">") ;;
+    *) complain "MAINTAINER: expected NAME <ADDRESS>" ;;
+    esac
+    sed -i "s|^Maintainer: .*|Maintainer: $MAINTAINER|" debian/control
+    sed -i "1,/^ -- /s|^ -- .*>  | -- $MAINTAINER  |" debian/changelog
+fi
 # Variables of the make that calls this are not for the one in there.
 env -u MAKEFLAGS -u MAKEOVERRIDES -u MFLAGS -u CFLAGS -u LDFLAGS \
     dpkg-buildpackage -us -uc -Jauto

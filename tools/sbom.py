@@ -16,6 +16,7 @@ import re
 import subprocess
 import sys
 import urllib.parse
+import uuid
 
 NOTHING = "NOASSERTION"
 # Packages of the Makefile's DEPS: relation to ours, and licence.
@@ -106,6 +107,12 @@ def dependency_entry(name, licence):
     return entry
 
 
+def namespace(version, code, seconds):
+    """A name of the document. This address is that of SPDX 2.3, 6.5, for who has no website."""
+    unique = hashlib.sha1(f"{version} {code} {seconds}".encode()).digest()[:16]
+    return f"https://spdx.org/spdxdocs/ted4-{version}-{uuid.UUID(bytes=unique, version=5)}"
+
+
 def own_entry(version, files):
     """The package of the project. Its verification code is that of SPDX 2.3, 7.9."""
     sums = sorted(f["checksums"][0]["checksumValue"] for f in files)
@@ -144,7 +151,7 @@ def document(paths, seconds):
         "dataLicense": "CC0-1.0",
         "SPDXID": "SPDXRef-DOCUMENT",
         "name": f"ted4-{version}",
-        "documentNamespace": f"https://ted4.example/spdx/ted4-{version}-{code}",
+        "documentNamespace": namespace(version, code, seconds),
         "creationInfo": {
             "created": created.strftime("%Y-%m-%dT%H:%M:%SZ"),
             "creators": ["Tool: ted4-sbom.py", "Organization: the TED4 authors"],

@@ -28,7 +28,7 @@ import sys
 with open(sys.argv[1], encoding="utf-8") as f:
     d = json.load(f)
 assert d["spdxVersion"] == "SPDX-2.3" and d["dataLicense"] == "CC0-1.0"
-assert re.fullmatch(r"https://\S+", d["documentNamespace"])
+assert re.fullmatch(r"https://spdx\.org/spdxdocs/ted4-\S+-[0-9a-f-]{36}", d["documentNamespace"])
 assert re.fullmatch(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ", d["creationInfo"]["created"])
 assert all(re.match("(Tool|Organization|Person): ", c) for c in d["creationInfo"]["creators"])
 elements = [d["SPDXID"]] + [e["SPDXID"] for e in d["packages"] + d["files"]]
