@@ -223,6 +223,34 @@ static void test_calibration_split(void **state)
     tiny_free(&f);
 }
 
+/* Every eighth picture is held out, in the order of their names, from the first one on: of nine,
+ * two. */
+static void test_llff_split(void **state)
+{
+    ted4_ray_options o = scene;
+    ted4_ray_message m;
+    tiny_folder f = tiny_new();
+    ted4_dataset d;
+
+    (void)state;
+    o.layout = RAY_LLFF;
+    o.n_frames = 1;
+    o.n_train = 8;
+    if (ted4_ray_write(&o, f.path, NULL, &m) != 0)
+        fail_msg("%s", m.text);
+    load(&d, &f);
+    assert_int_equal(d.n_pictures, 9);
+    for (size_t i = 0; i < 9; i++) {
+        int before = 0;
+
+        for (size_t k = 0; k < 9; k++)
+            before += strcmp(d.pictures[k].path, d.pictures[i].path) < 0;
+        assert_int_equal(d.pictures[i].is_test, (before % 8 == 0));
+    }
+    ted4_dataset_free(&d);
+    tiny_free(&f);
+}
+
 /* The pictures in images/camNN/, a table of float32, and a limit on the number of frames. */
 static void test_neu3d_forms(void **state)
 {
@@ -385,9 +413,10 @@ static int teardown(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_layouts),     cmocka_unit_test(test_digests),
-        cmocka_unit_test(test_videos),      cmocka_unit_test(test_calibration_split),
-        cmocka_unit_test(test_neu3d_forms), cmocka_unit_test(test_hypernerf_forms),
+        cmocka_unit_test(test_layouts),         cmocka_unit_test(test_digests),
+        cmocka_unit_test(test_videos),          cmocka_unit_test(test_calibration_split),
+        cmocka_unit_test(test_llff_split),      cmocka_unit_test(test_neu3d_forms),
+        cmocka_unit_test(test_hypernerf_forms),
     };
 
     return cmocka_run_group_tests_name("layouts", tests, setup, teardown);

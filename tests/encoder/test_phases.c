@@ -217,12 +217,22 @@ static void test_growth(void **state)
 
 /* ---- in which order ---- */
 
-/* Every round contains each training picture once and no held-out one, in a different order. */
+/* Fills step[i] with where, in one order of n items, the item is that is number i of another. */
+static void step_between(const uint32_t *from, const uint32_t *to, uint32_t n, uint32_t *step)
+{
+    for (uint32_t i = 0; i < n; i++)
+        for (uint32_t k = 0; k < n; k++)
+            if (from[k] == to[i])
+                step[i] = k;
+}
+
+/* Every round contains each training picture once and no held-out one, in a different order, and
+ * the orders are not powers of one shuffle. */
 static void test_order(void **state)
 {
     enum { ROUNDS = 3, MOST = 64 };
     const ted4_train_options o = ball_options();
-    uint32_t item[ROUNDS][MOST];
+    uint32_t item[ROUNDS][MOST], step[2][MOST] = { { 0 } };
     ted4_trainer t;
 
     (void)state;
@@ -243,6 +253,9 @@ static void test_order(void **state)
         for (int k = 0; k < r; k++)
             assert_memory_not_equal(item[r], item[k], t.order.n * sizeof **item);
     }
+    for (int r = 0; r < 2; r++)
+        step_between(item[r], item[r + 1], t.order.n, step[r]);
+    assert_memory_not_equal(step[0], step[1], t.order.n * sizeof **step);
     ted4_trainer_finish(&t);
 }
 

@@ -3,9 +3,9 @@
  * and of the results is that of the decoder's mutants (conformance/tool/mutant_list.h).
  *
  * All work is done in a copy of the tree, together with the build folder, so that make compiles
- * only what depends on the changed file. A mutant is killed if one of its programs fails, crashes
- * or does not end; the first one is recorded, with the test that failed. Before all this, the
- * unchanged programs have to pass, built and run in the same way.
+ * only what depends on the changed file, and the tree may change meanwhile. A mutant is killed if
+ * one of its programs fails, crashes or does not end; the first one is recorded, with the test that
+ * failed. Before all this, the unchanged programs have to pass, built and run in the same way.
  *
  * What a result depends on: a kill, on the code of the file and on that of the program that killed
  * it; anything else, on the whole encoder and on the programs.
@@ -38,7 +38,8 @@ typedef struct {
 typedef struct {
     const options *o;
     conf_mutant_list list;
-    char tree[CONF_PATH]; /* the copy */
+    char folder[CONF_PATH]; /* o->folder, absolute */
+    char tree[CONF_PATH];   /* the copy, in which the campaign runs */
 } campaign;
 
 /* ---- what results depend on ---- */
@@ -88,7 +89,7 @@ static int shell(const char *command)
     return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
-static void copy_tree(campaign *c)
+static void enter_copy(campaign *c)
 {
     const char *const tmp = getenv("TMPDIR");
     conf_bytes command = { NULL, 0, 0 };
@@ -103,6 +104,8 @@ static void copy_tree(campaign *c)
     if (!shell((const char *)command.data))
         conf_die("%s: the tree cannot be copied there", c->tree);
     conf_free(&command);
+    if (chdir(c->tree) != 0)
+        conf_die("%s: cannot be entered", c->tree);
 }
 
 static void remove_tree(const campaign *c)
@@ -113,35 +116,24 @@ static void remove_tree(const campaign *c)
     (void)shell(command);
 }
 
-/* Writes a file of the copy. Its time is now, so that make compiles all that depends on it. */
-static void put_file(const campaign *c, const char *file, const conf_bytes *b)
-{
-    char path[CONF_PATH];
-
-    conf_path(path, "%s/%s", c->tree, file);
-    conf_write(path, b->data, b->size);
-}
-
 /* Shows the log of make, to help find the cause of a failure. */
-static void show_log(const campaign *c)
+static void show_log(void)
 {
-    char path[CONF_PATH];
     conf_bytes log;
 
-    conf_path(path, "%s/log", c->tree);
-    if (conf_read(path, &log))
+    if (conf_read("log", &log))
         fputs((const char *)log.data, stderr);
     conf_free(&log);
 }
 
-/* Makes programs in the copy: words, separated by spaces. Returns 1 on success. */
+/* Makes programs: words, separated by spaces. Returns 1 on success. */
 static int build(const campaign *c, const char *programs)
 {
     conf_bytes command = { NULL, 0, 0 };
     char word[CONF_MUTANT_LINE];
     int good;
 
-    conf_print(&command, "cd '%s' && %s", c->tree, c->o->make);
+    conf_print(&command, "%s", c->o->make);
     for (const char *at = programs; (at = next_word(at, word)) != NULL;)
         conf_print(&command, " '%s/tests/%s'", c->o->build, word);
     conf_print(&command, " >log 2>&1");
@@ -150,16 +142,15 @@ static int build(const campaign *c, const char *programs)
     return good;
 }
 
-/* Runs one test program in the copy. The caller frees p. */
+/* Runs one test program. The caller frees p. */
 static void run_program(const campaign *c, const char *name, conf_process *p)
 {
-    char command[2 * CONF_PATH], program[CONF_PATH];
-    const conf_process_options o = { command, "CMOCKA_MESSAGE_OUTPUT=STDOUT", c->o->timeout,
+    char program[CONF_PATH];
+    const conf_process_options o = { "exec", "CMOCKA_MESSAGE_OUTPUT=STDOUT", c->o->timeout,
                                      MOST_MEMORY };
     const char *argv[] = { program, NULL };
     conf_process *one[1] = { p };
 
-    snprintf(command, sizeof command, "cd '%s' && exec", c->tree);
     conf_path(program, "%s/tests/%s", c->o->build, name);
     conf_process_start(p, &o, argv);
     while (conf_process_wait(one, 1, 100) < 0)
@@ -245,7 +236,7 @@ static void baseline(const campaign *c)
             if (strstr((const char *)done.data, marked) != NULL)
                 continue;
             if (!build(c, word)) {
-                show_log(c);
+                show_log();
                 conf_die("the unchanged %s cannot be built", word);
             }
             pass_unchanged(c, word);
@@ -255,6 +246,8 @@ static void baseline(const campaign *c)
     conf_free(&done);
 }
 
+/* Changing a file, and changing it back, sets its time to now, so that make compiles all that
+ * depends on it. */
 static void try_one(const campaign *c, conf_mutant *m)
 {
     conf_bytes original, changed = { NULL, 0, 0 };
@@ -262,17 +255,17 @@ static void try_one(const campaign *c, conf_mutant *m)
     if (!conf_read(m->file, &original))
         conf_die("%s: cannot be read", m->file);
     (void)conf_mutant_apply(m, &changed);
-    put_file(c, m->file, &changed);
+    conf_write(m->file, changed.data, changed.size);
     if (build(c, m->programs)) {
         judge(c, m);
     } else {
         snprintf(m->verdict, sizeof m->verdict, "no compile");
-        show_log(c);
+        show_log();
     }
-    put_file(c, m->file, &original);
+    conf_write(m->file, original.data, original.size);
     conf_free(&original);
     conf_free(&changed);
-    conf_mutant_results_add(&c->list, m, c->o->folder);
+    conf_mutant_results_add(&c->list, m, c->folder);
     fprintf(stderr, "%s: %s %s %s\n", m->id, m->verdict, m->vector, m->by);
 }
 
@@ -292,7 +285,7 @@ static void run_due(campaign *c)
     if (c->o->make == NULL)
         conf_die("--make is missing: make with the variables of the build (make encoder-mutants "
                  "has them)");
-    copy_tree(c);
+    enter_copy(c);
     baseline(c);
     for (size_t i = 0; i < c->list.n; i++)
         if (is_due(c, &c->list.m[i]))
@@ -394,7 +387,7 @@ static int write_page(const campaign *c)
                conf_mutant_count(l, "no compile"), conf_mutant_count(l, ""));
     print_areas(l, &b);
     print_others(l, &b);
-    conf_path(path, "%s/MUTANTS.md", c->o->folder);
+    conf_path(path, "%s/MUTANTS.md", c->folder);
     conf_write(path, b.data, b.size);
     conf_free(&b);
     printf("%zu mutants, %zu killed, %zu survived, %zu not judged: %s\n", l->n, killed, survived,
@@ -407,16 +400,20 @@ static int write_page(const campaign *c)
 static int run_campaign(const options *o)
 {
     campaign c = { .o = o, .list = { .ground = ground } };
-    char path[CONF_PATH];
+    char path[CONF_PATH], here[CONF_PATH];
     int good = 1;
 
-    conf_path(path, "%s/mutants.list", o->folder);
+    if (getcwd(here, sizeof here) == NULL)
+        conf_die("the current folder has too long a name");
+    conf_path(c.folder, "%s%s%s", o->folder[0] == '/' ? "" : here, o->folder[0] == '/' ? "" : "/",
+              o->folder);
+    conf_path(path, "%s/mutants.list", c.folder);
     conf_mutant_list_read(&c.list, path);
     for (size_t i = 0; i < c.list.n; i++)
         if (c.list.m[i].programs[strspn(c.list.m[i].programs, " ")] == '\0')
             conf_die("%s: %s: no program judges it", path, c.list.m[i].id);
     c.list.all = conf_mutant_code_of("$(find ref-encoder -name '*.[ch]' | LC_ALL=C sort)");
-    conf_mutant_results_read(&c.list, o->folder);
+    conf_mutant_results_read(&c.list, c.folder);
     if (o->check) {
         printf("%zu mutants, %zu with a result that holds\n", c.list.n,
                c.list.n - conf_mutant_count(&c.list, ""));
