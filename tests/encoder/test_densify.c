@@ -171,6 +171,18 @@ static void test_growth_depths(void **state)
     }
 }
 
+/* Makes the first offset of anchor i point at a place whose x is beyond the cube, with a strong
+ * gradient. */
+static void aim_outside(ted4_trainer *t, size_t i, float x)
+{
+    const float size =
+        exp2f(*ted4_anchor_value(&t->anchors, TED4_ROW_VALUE, i, t->layout.first[TED4_SCALING]));
+
+    *ted4_anchor_value(&t->anchors, TED4_ROW_VALUE, i, t->layout.first[TED4_OFFSET]) =
+        (x - *ted4_anchor_value(&t->anchors, TED4_ROW_POSITION, i, 0)) / size;
+    plant(t, i, 0, 1.0f, SEEN);
+}
+
 /* Of each adjustment and depth, no two anchors share a voxel; a place outside the cube grows
  * nothing; statistics that were used are reset, the others continue. */
 static void test_growth_limits(void **state)
@@ -186,8 +198,8 @@ static void test_growth_limits(void **state)
     for (int k = 0; k < K; k++) /* offsets 1 and 2 are zero: the voxel is occupied */
         plant(&t, 50, k, 1.0f, SEEN);
     plant(&t, 51, 0, 1.0f, SEEN - 1);
-    *ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, 52, t.layout.first[TED4_OFFSET]) = 30.0f;
-    plant(&t, 52, 0, 1.0f, SEEN);
+    aim_outside(&t, 52, 1.25f);
+    aim_outside(&t, 53, 30.0f);
     *ted4_anchor_value(&t.anchors, TED4_ROW_OPACITY, 51, 0) = 0.75f;
     *ted4_anchor_value(&t.anchors, TED4_ROW_OPACITY, 51, 1) = 3.0f;
     name_anchors(&t);
