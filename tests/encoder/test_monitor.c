@@ -461,6 +461,28 @@ static void test_resumed(void **state)
     free(again.bytes);
 }
 
+/* If the step after the good state fails, the same picture would fail again: it is skipped. If a
+ * later one fails, smaller steps lead there another way, and no picture is skipped. */
+static void test_skipped(void **state)
+{
+    (void)state;
+    for (uint64_t steps = 0; steps < 2; steps++) {
+        ted4_trainer t;
+        uint32_t next;
+
+        begin_at(&t, 3);
+        next = t.order.next;
+        assert_true(next + 1 < t.order.n);
+        assert_int_equal(ted4_state_take(&t, &t.monitor.good), 0);
+        ball_train(&t, 3 + steps);
+        t.monitor.found = 1;
+        assert_int_equal(ted4_monitor_recover(&t), 0);
+        assert_int_equal(t.iteration, 3);
+        assert_int_equal(t.order.next, steps == 0 ? next + 1 : next);
+        ted4_trainer_finish(&t);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -470,6 +492,7 @@ int main(void)
         cmocka_unit_test(test_divergence),  cmocka_unit_test(test_empty_space),
         cmocka_unit_test(test_smaller),     cmocka_unit_test(test_other_layout),
         cmocka_unit_test(test_three_times), cmocka_unit_test(test_resumed),
+        cmocka_unit_test(test_skipped),
     };
 
     return cmocka_run_group_tests_name("monitor", tests, set_up, tear_down);
