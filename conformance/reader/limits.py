@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-2-Clause
-"""Limits that a caller can set (R-LVL-007): memory, estimated from HEAD before anything of pass 2
-is allocated (R-ERR-005), and work (R-LVL-008)."""
+"""Limits that a caller can set (R-LVL-007): memory, computed from HEAD before anything of pass 2 is
+allocated (R-ERR-005), and work (R-LVL-008)."""
 
 from shapes import blob_values, hyperprior_shape, products_of_tier_e
 from verdict import require
@@ -9,15 +9,28 @@ DEFAULT = 1 << 32
 PER_VALUE, PER_SYMBOL, PER_BYTE = 100, 200, 20          # bytes of Python objects, on the safe side
 
 
+def memory_of_tier_e(h, file_bytes):
+    """M_E of 13.3 in bytes, with one tile at a time."""
+    components = sum(dim for _, dim in h.types)
+    padded = -(-min(h.tile_size, h.n_anchors) // 64) * 64
+    per_anchor = 4 * hyperprior_shape(h)[-1] + 2 * h.feature_dim + 11
+    return ((1 << 20) + file_bytes + 16 * blob_values(h) + h.n_anchors * (2 * components + 16)
+            + padded * per_anchor + (1 << 17))
+
+
 def check_memory(h, file_bytes, bound):
-    """limit.memory when decoding may need more than `bound` bytes. What a file claims beyond what
-    its bytes could hold is not counted: a deflated value takes at least 1/258 byte (RFC 1951: 258
-    bytes in two bits, four bytes a value), an anchor 6 bytes of POSN."""
+    """limit.memory when M_E is above `bound`, or, without one, when decoding in Python may need
+    more than DEFAULT bytes. What a file claims beyond what its bytes could hold is not counted
+    there: a deflated value takes at least 1/258 byte (RFC 1951: 258 bytes in two bits, four bytes a
+    value), an anchor 6 bytes of POSN."""
+    if bound is not None:
+        require(memory_of_tier_e(h, file_bytes) <= bound, "limit.memory", None)
+        return
     values = min(blob_values(h), 258 * file_bytes)
     anchors = min(h.n_anchors, file_bytes // 6)
     symbols = anchors * sum(dim for _, dim in h.types)
     need = PER_VALUE * values + PER_SYMBOL * symbols + PER_BYTE * file_bytes
-    require(need <= (DEFAULT if bound is None else bound), "limit.memory", None)
+    require(need <= DEFAULT, "limit.memory", None)
 
 
 def check_work(h, file_bytes, bound):
