@@ -2,6 +2,7 @@
 SPDX-License-Identifier: BSD-2-Clause"""
 import os
 
+from . import apart
 from . import stability_tables as tables
 from .bars import DELIVERED, Bars, First
 from .earlier import earlier
@@ -59,6 +60,7 @@ def write(runs, charts, results, _):
     tables.out_section(lab)
     tables.points_section(lab)
     tables.numbers_section(lab)
+    apart.section(lab.page, runs, results)
     tables.strip_section(lab)
     tables.command_section(lab)
     run_bars(lab)
