@@ -29,17 +29,19 @@ def today(results):
 
 
 def section(page, runs, results):
+    """Of the rows that are still those of the sources that apart.csv names."""
     rows = [(runs.find(row["tag"]), row) for row in read_rows(results, "apart.csv")]
-    rows = [(run, row) for run, row in rows if run.has()]
+    rows = [(run, row) for run, row in rows
+            if row["sources"] in run.text("key").replace(".", "-").split("-")]
     if not rows:
         return
     page.heading("Machines")
     gaps = [(float(row["psnr"]) - run.number("psnr"),
              100 * (float(row["bytes"]) / run.number("bytes") - 1)) for run, row in rows]
     most = [max(abs(gap[k]) for gap in gaps) for k in (0, 1)]
-    page.prose(f"""The rows of this page are of older sources, whose trainings gave the same bytes
-        only for the same build on the same machine. The same trainings, by the same sources but
-        another build of them, end up to {most[0]:.2f} dB and {most[1]:.1f} % of the bytes apart.
+    page.prose(f"""Before the present sources, trainings gave the same bytes only for the same
+        build on the same machine. Rows of such sources, trained again by another build of them, end
+        up to {most[0]:.2f} dB and {most[1]:.1f} % of the bytes apart.
         {today(results)}""")
     page.table("run", "PSNR dB", "bytes", "other build", "PSNR dB", "bytes", "difference")
     for (run, row), (psnr, rate) in zip(rows, gaps):
