@@ -107,8 +107,11 @@ int conf_cover_run(const conf_cover_options *o)
             json_object_get(json_object_get(e[i].descriptor, "expect"), "result"));
         conf_bytes file;
 
-        if (!conf_read(e[i].file, &file))
-            continue; /* made on demand: not stored */
+        if (!conf_read(e[i].file, &file)) {
+            if (json_object_get(e[i].descriptor, "demand") == NULL)
+                conf_die("%s: cannot be read", e[i].file);
+            continue;
+        }
         conf_cover_syntax(&c, &e[i], &file);
         if (strcmp(result, "valid") == 0)
             conf_cover_model(&c, &e[i], &file);

@@ -311,6 +311,9 @@ static void replay_without_files(void **state)
     snprintf(line, sizeof line, "missing: WRK-escape: %s/vectors/WRK-escape.ted4 is not there\n",
              folder);
     assert_non_null(strstr(said, line));
+    assert_int_equal(conf(last, sizeof last, "cover --suite %s", folder), 3);
+    snprintf(line, sizeof line, "ted4conf: %s/vectors/WRK-escape.ted4: cannot be read\n", folder);
+    assert_string_equal(last, line);
     snprintf(line, sizeof line, "rm %s/vectors/WRK-*", folder);
     assert_int_equal(system(line), 0);
     assert_int_equal(conf(last, sizeof last, "replay --suite %s", folder), 3);
