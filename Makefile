@@ -180,7 +180,7 @@ include player/player.mk tools/pages/pages.mk tools/packages.mk tests/mutants/mu
 DEPS     = gcc libc6-dev libcmocka-dev libjansson-dev libjpeg62-turbo-dev libpng-dev libxxhash-dev \
            python3 zlib1g-dev
 DEPS_DEV = clang-14 clang-format-14 llvm-14 libclang-rt-14-dev libomp-14-dev afl++ ffmpeg pandoc \
-           lcov valgrind cmake g++ pkg-config python3-numpy
+           lcov valgrind cmake g++ pkg-config python3-numpy abigail-tools
 SUDO     = $(shell [ "$$(id -u)" = 0 ] || echo sudo)
 INSTALL_DEBIAN = missing=$$(for p in $(1); do \
 	dpkg-query -W -f='$${Status}' $$p 2>/dev/null | grep -q 'ok installed' || echo $$p; done); \

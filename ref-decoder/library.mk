@@ -34,4 +34,12 @@ install-library: library
 	for f in ted4-config ted4-config-version; do \
 	    $(FILL) ref-decoder/$$f.cmake.in >$(DESTDIR)$(LIBDIR)/cmake/ted4/$$f.cmake || exit; done
 
-.PHONY: library install-library
+# The types behind the symbols, as abidw (Debian: abigail-tools) reads them from debug information;
+# tests/tools/test_library.sh compares a build with them. To be made again, on x86-64, by who means
+# to change them.
+library-abi: install-library
+	abidw --no-corpus-path --no-comp-dir-path --no-show-locs --drop-private-types \
+	    --exported-interfaces-only --headers-dir $(DESTDIR)$(PREFIX)/include \
+	    --out-file ref-decoder/libted4dec.abi $(SHARED)
+
+.PHONY: library install-library library-abi

@@ -1,8 +1,8 @@
 #!/bin/sh
 # test_library.sh - the decoder as a library in other people's builds: the symbols of the shared
-# library, headers in every dialect, the examples of doc/examples by pkg-config, a project by CMake,
-# and the Python module. Tests for which the machine lacks a tool are skipped. Prints lines as a
-# cmocka program does; run by `make test` from the project's root.
+# library and their types, headers in every dialect, the examples of doc/examples by pkg-config, a
+# project by CMake, and the Python module. Tests for which the machine lacks a tool are skipped.
+# Prints lines as a cmocka program does; run by `make test` from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 . tests/support/speak.sh
@@ -52,6 +52,13 @@ if has nm && has objdump; then
 else
     skip calls "there is no nm or no objdump"
 fi
+
+# The types of those functions have not changed, in the eyes of programs that use them.
+if ! has abidiff; then skip abi "there is no abidiff (abigail-tools)"
+elif ! readelf -h "$shared" | grep -q 'X86-64' || ! readelf -S "$shared" | grep -q debug_info; then
+    skip abi "not x86-64, or without debug information"
+elif abidiff ref-decoder/libted4dec.abi "$shared" >"$out/said" 2>&1; then ok abi
+else fail abi "$(cat "$out/said")"; fi
 
 # Every function that the installed headers declare is exported, and nothing else.
 sed 's|//.*||' "$usr/include/ted4/ted4.h" "$usr/include/ted4/base/status.h" | tr '\n' ' ' |
