@@ -70,6 +70,7 @@ conformance-mutants:
 	build-mutants/ted4conf mutants -j $(CONF_JOBS) -b build-mutants \
 	    --vectors build-mutants/suite \
 	    --compile '$(CC) -std=c11 -D_POSIX_C_SOURCE=200809L -O1 $(STRICT) -fopenmp' \
+	    --flags '_avx2.c=-mavx2' --flags '_avx512.c=$(AVX512)' --flags '_vnni.c=$(VNNI)' \
 	    --libraries '$(LIBS)'
 
 .PHONY: conformance conformance-gen conformance-cover conformance-branches conformance-threads

@@ -27,6 +27,7 @@ static void begin(conf_mutant_list *l, const char *path, const char *line)
         conf_die("no memory");
     m = &l->m[l->n];
     memset(m, 0, sizeof *m);
+    m->place = conf_place_named("");
     if (sscanf(line, "mutant %63s %199s", m->id, m->file) != 2)
         conf_die("%s: bad line: %s", path, line);
     for (size_t i = 0; i < l->n; i++)
@@ -40,6 +41,13 @@ static void take_text(char *to, const char *line)
     snprintf(to, CONF_MUTANT_LINE, "%s", line + (line[1] == ' ' ? 2 : 1));
 }
 
+static void take_place(conf_mutant *m, const char *path, const char *line)
+{
+    m->place = conf_place_named(line + 1 + strspn(line + 1, " "));
+    if (m->place == NULL)
+        conf_die("%s: %s: no such place: %s", path, m->id, line);
+}
+
 static void take_line(conf_mutant_list *l, const char *path, const char *line)
 {
     conf_mutant *const m = l->n > 0 ? &l->m[l->n - 1] : NULL;
@@ -50,6 +58,8 @@ static void take_line(conf_mutant_list *l, const char *path, const char *line)
         take_text(m->from, line);
     else if (m != NULL && line[0] == '>')
         take_text(m->to, line);
+    else if (m != NULL && line[0] == '@')
+        take_place(m, path, line);
     else if (m != NULL && line[0] == '=')
         take_text(m->why, line);
     else if (m != NULL && line[0] == '!')
@@ -152,6 +162,7 @@ static uint64_t hash_of(const conf_entry *vector)
     return hash;
 }
 
+/* Hashes the files that have mutants, and what only other places than the first use. */
 static void hash_files(conf_mutant_list *l)
 {
     for (size_t i = 0; i < l->n; i++) {
@@ -160,6 +171,10 @@ static void hash_files(conf_mutant_list *l)
                 l->m[i].code = l->m[j].code;
         if (l->m[i].code == 0)
             l->m[i].code = conf_mutant_code_of(l->m[i].file);
+        if (l->beyond == 0 && l->m[i].place->name[0] != '\0')
+            l->beyond = conf_mutant_code_of("ref-decoder/kernel/*.[ch] "
+                                            "ref-decoder/tool/threads.[ch] " CONF_PRINTED_INFLATE
+                                            " " CONF_ANNEX_L);
     }
 }
 
@@ -200,6 +215,10 @@ static uint64_t key_of(const conf_mutant_list *l, const conf_mutant *m)
 
     conf_print(&text, "%s|%s|%s|%016" PRIx64 "|%s|%016" PRIx64, m->file, m->from, m->to, m->code,
                m->verdict, ground);
+    if (m->place->name[0] != '\0')
+        conf_print(&text, "|%s", m->place->name);
+    if (m->place->name[0] != '\0' && strcmp(m->verdict, "killed") != 0)
+        conf_print(&text, "|%016" PRIx64, l->beyond);
     key = ground == 0 ? 0 : conf_seed((const char *)text.data);
     conf_free(&text);
     return key;

@@ -3,25 +3,28 @@
  *     mutant ID FILE
  *     < the line as it is, without its indentation
  *     > the line as it becomes
+ *     @ where it is judged (mutant_place.h); without this line, by plain kernels in one thread
  *     = why no vector distinguishes it from the original, where that is known
  *     ! PROGRAM ...    test programs that judge it, in this order, below tests/ (only where no
  *                      vectors do: tests/mutants/encoder_mutants.c)
  * A row of mutants.csv is ID,KEY,VERDICT,VECTOR,BY. A result holds as long as its key matches. The
- * key covers the mutant's text, the code of its file without comments and spacing, and
+ * key covers the mutant's text and place, the code of its file without comments and spacing, and
  *     killed                   the vector that killed it: the hash of its file and its expected
  *                              answer, so that a growing suite loses no kill;
- *     survived, no compile     the code of every decoder file with mutants, and all vectors.
+ *     survived, no compile     the code of every decoder file that is used there, and all vectors.
  * A kill is assumed to survive changes to other files of the decoder.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef CONF_MUTANT_LIST_H
 #define CONF_MUTANT_LIST_H
 
+#include "mutant_place.h"
 #include "suite.h"
 
 enum { CONF_MUTANT_LINE = 400 };
 
 typedef struct {
     char id[64], file[200], from[CONF_MUTANT_LINE], to[CONF_MUTANT_LINE], why[CONF_MUTANT_LINE];
+    const conf_place *place;
     uint64_t code; /* hash of the file's code */
     char programs[CONF_MUTANT_LINE];
     char verdict[16];          /* "": no valid result; "killed", "survived", "no compile" */
@@ -33,6 +36,8 @@ typedef struct conf_mutant_list {
     conf_mutant *m; /* owned */
     size_t n;
     uint64_t all;       /* hash of the decoder's code and of all vectors */
+    uint64_t beyond;    /* hash of the code that only other places than the first use; 0: none is
+                           named */
     conf_entry *vector; /* owned: the vectors of the suite */
     size_t n_vectors;
     /* Returns the hash of what the verdict of m depends on besides the code of its file, or 0 if

@@ -4,6 +4,8 @@
 #ifndef CONF_MUTANTS_H
 #define CONF_MUTANTS_H
 
+enum { CONF_MUTANT_FLAGS = 8 };
+
 typedef struct {
     const char *suite;   /* contains mutants.list, mutants-equivalent.list, mutants.csv, MUTANTS.md,
                             vectors */
@@ -12,8 +14,10 @@ typedef struct {
     const char *build;   /* build folder of ted4conf */
     const char
         *compile; /* compile command with its flags, without -c and -o; NULL: nothing can be run */
-    const char *libraries; /* linker arguments after the objects */
-    const char *only;      /* only ids with this prefix; NULL: all */
+    const char *flags[CONF_MUTANT_FLAGS]; /* "SUFFIX=FLAGS": flags that sources whose names end so
+                                             need besides; ends with NULL unless full */
+    const char *libraries;                /* linker arguments after the objects */
+    const char *only;                     /* only ids with this prefix; NULL: all */
     int jobs;
     double timeout; /* seconds per replay */
     int check;      /* neither run nor write anything */

@@ -319,6 +319,7 @@ enum {
     MUTANTS_VECTORS,
     MUTANTS_BUILD,
     MUTANTS_COMPILE,
+    MUTANTS_FLAGS,
     MUTANTS_LIBRARIES,
     MUTANTS_ONLY,
     MUTANTS_JOBS,
@@ -340,6 +341,8 @@ static const ted4_argument mutants_table[MUTANTS_OPTIONS] = {
     [MUTANTS_COMPILE] = { 0, "compile", "CMD",
                           "compiler and flags, those of the decoder; needed when something is to "
                           "be run" },
+    [MUTANTS_FLAGS] = { 0, "flags", "SUFFIX=FLAGS",
+                        "flags for the sources that end so; may be given several times" },
     [MUTANTS_LIBRARIES] = { 0, "libraries", "LIBS", "behind the objects when linking" },
     [MUTANTS_ONLY] = { 0, "only", "ID", "mutants whose id begins so" },
     [MUTANTS_JOBS] = { 'j', "jobs", "N", "mutants at a time. Default 1" },
@@ -364,10 +367,12 @@ static int mutants(int argc, char **argv)
         "sources, or an unchanged decoder that does not pass.\n",
         NULL
     };
-    conf_mutant_options o = {
-        "conformance", NULL, "build", NULL, "-lpng -ljpeg -ljansson -lxxhash -lz -lm",
-        NULL,          1,    300,     0
-    };
+    conf_mutant_options o = { .suite = "conformance",
+                              .build = "build",
+                              .libraries = "-lpng -ljpeg -ljansson -lxxhash -lz -lm",
+                              .jobs = 1,
+                              .timeout = 300 };
+    int n_flags = 0;
     const char *value;
 
     for (int i; (i = ted4_arguments_next(&command, argc, argv, &value)) != TED4_ARGUMENTS_END;)
@@ -378,6 +383,11 @@ static int mutants(int argc, char **argv)
         case MUTANTS_VECTORS: o.vectors = value; break;
         case MUTANTS_BUILD: o.build = value; break;
         case MUTANTS_COMPILE: o.compile = value; break;
+        case MUTANTS_FLAGS:
+            if (n_flags == CONF_MUTANT_FLAGS)
+                return usage("--flags: too many");
+            o.flags[n_flags++] = value;
+            break;
         case MUTANTS_LIBRARIES: o.libraries = value; break;
         case MUTANTS_ONLY: o.only = value; break;
         case MUTANTS_JOBS: o.jobs = (int)number(value, 64); break;

@@ -2,8 +2,13 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "ways.h"
 
+#include <stdlib.h>
 #include <string.h>
+#include "memory_bound.h"
 #include "norm/scene.h"
+
+/* The reference decoder decodes at most so many tiles at the same time (spec 13.3). */
+enum { MOST_TILES = 16 };
 
 /* The result of decoding a file. A hash is 0 if there is nothing to hash. */
 typedef struct {
@@ -113,6 +118,69 @@ static int verdict_stays(const conf_bytes *file, const ted4_options *o, ted4_sta
            ted4_dump_syntax(file->data, file->size, o, throw_away, NULL, &e) == verdict;
 }
 
+/* An allocator that keeps count, in bytes: of what is held, and of the most that was held or asked
+ * for. What is too much for any vector is refused. */
+typedef struct {
+    uint64_t held, most;
+} meter;
+
+enum { METER_HEADER = 16, METER_MOST = 1 << 30 };
+
+static void *meter_alloc(void *user, size_t size)
+{
+    meter *const m = user;
+    char *p;
+
+    m->most = m->held + size > m->most ? m->held + size : m->most;
+    if (size > METER_MOST || (p = malloc(size + METER_HEADER)) == NULL)
+        return NULL;
+    memcpy(p, &size, sizeof size);
+    m->held += size;
+    return p + METER_HEADER;
+}
+
+static void meter_free(void *user, void *p)
+{
+    meter *const m = user;
+    size_t size;
+
+    memcpy(&size, (char *)p - METER_HEADER, sizeof size);
+    m->held -= size;
+    free((char *)p - METER_HEADER);
+}
+
+/* Returns 1 if decoding the file, with the caller's threads (or NULL), takes no more memory than
+ * spec 13.3 allows, and neither does the query of a valid file. */
+static int memory_holds(const conf_bytes *file, const ted4_parallel *threads)
+{
+    static const ted4_query q = { 0, 1, { 0, 0, 0 } };
+    meter memory = { 0, 0 };
+    const ted4_options o = { .allocator = { meter_alloc, meter_free, &memory },
+                             .parallel = threads,
+                             .max_bytes = UINT64_MAX };
+    uint64_t n_values, n_tiles;
+    ted4_recon *recon;
+    ted4_gaussians g;
+    ted4_info info;
+    ted4_scene *s;
+    int good;
+
+    if (ted4_decode(file->data, file->size, &o, &s, NULL) != TED4_OK)
+        return threads != NULL || memory.most <= conf_memory_paid(file->size);
+    n_values = s->nete.n + s->netr.n + s->bank.n;
+    n_tiles = threads == NULL ? 1 : s->shape.n_tiles < MOST_TILES ? s->shape.n_tiles : MOST_TILES;
+    good = memory.most <= conf_memory_decode(&s->head, file->size, n_values, n_tiles);
+    memory.most = memory.held = 0;
+    ted4_scene_info(s, &info);
+    if (ted4_recon_new(&recon, s, &o) != TED4_OK)
+        conf_die("no memory");
+    (void)ted4_recon_query(recon, &q, threads, &g);
+    good &= memory.most <= conf_memory_query(&s->head, n_values, info.n_gaussians);
+    ted4_recon_free(recon);
+    ted4_scene_free(s);
+    return good;
+}
+
 const char *conf_ways_differ(const conf_bytes *file, conf_knobs knobs)
 {
     static const ted4_parallel threads = { backwards, NULL };
@@ -133,6 +201,8 @@ const char *conf_ways_differ(const conf_bytes *file, conf_knobs knobs)
         return "with threads";
     if (knobs.memory > 0 || knobs.work > 0)
         return NULL;
+    if (!memory_holds(file, NULL) || !memory_holds(file, &threads))
+        return "about memory";
     other = decode(file, NULL);
     return !same(&plain, &other) ? "without options"
            : !verdict_stays(file, &o, plain.what.verdict.code) ||

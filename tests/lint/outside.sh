@@ -12,7 +12,8 @@ tools/scene/ray_set.c          fork execlp
 conformance/tool/process.c     fork execv setenv
 conformance/tool/run.c         getenv
 conformance/tool/encoder.c     getenv
-conformance/tool/mutants.c     getenv fork system
+conformance/tool/mutant_build.c getenv system
+conformance/tool/mutants.c     fork
 fuzz/scene_folder.c            getenv
 bench/bench_decode.c           setenv
 bench/bench_render.c           setenv

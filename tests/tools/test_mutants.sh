@@ -21,7 +21,8 @@ cp bin/program "$2" && chmod +x "$2"
 END
 cat >"$out/bin/program" <<'END'
 #!/bin/sh
-source=$(cat "$(dirname "$0")"/ref-decoder/*/*.c)
+here=$(dirname "$0")
+source=$(cat "$here"/ref-decoder/*/*.c "$here/inc/spec/inflate.h" 2>/dev/null)
 says() { printf '%s' "$source" | grep -qF "$1"; }
 [ "${MOOD:-}" = no-suite ] && { echo 'ted4conf: no memory' >&2; exit 3; }
 [ "${MOOD:-}" = no-vector ] && says 'x > 1' && exit 3
@@ -29,12 +30,18 @@ echo 'at V-one'
 [ "${MOOD:-}" = slow ] && sleep 1
 says 'y = 3' && kill -SEGV $$
 echo 'at V-two'
+says 'v = 3' && { echo 'fail: V-two: not by annex L'; exit 1; }
+says 'w = 3' && case " $TED4_KERNEL $* " in
+    ' plain '*' --threads 4 '*) echo 'fail: V-two: something else with threads'; exit 1;;
+esac
 says 'x > 1' && { echo 'fail: V-two: should be valid'; exit 1; }
 [ "${MOOD:-}" = wrong ] && { echo 'fail: V-two: as ever'; exit 1; }
 echo '2 run, 0 failed'
 END
 chmod +x "$out/bin/cc"
 cp bench/sources.awk "$out/bench"
+mkdir -p "$out/tests/spec" "$out/spec" "$out/player/wasm"
+cp tests/spec/code.awk "$out/tests/spec"
 export PATH="$out/bin:$PATH" TMPDIR="$out"            # folders of campaigns that end early stay
 
 fresh() {
@@ -75,7 +82,7 @@ expect all_run 1 '3 mutants, 2 killed, 1 survived, 0 not judged: not enough' mut
 check rows "$out/suite/mutants.csv" ',killed,V-two,should be valid' ',killed,V-one,crash' \
     ',survived,,'
 check page "$out/suite/MUTANTS.md" '| killed | 2 (66.7 %) |' \
-    '| lives | ref-decoder/read/g.c | survived | `w = 1;` | `w = 2;` | nobody looks |' \
+    '| lives | ref-decoder/read/g.c | plain | survived | `w = 1;` | `w = 2;` | nobody looks |' \
     '`mutants.csv` names the first vector'
 holds all_hold 3
 cp "$out/suite/mutants.csv" "$out/before"
@@ -110,6 +117,50 @@ ran; rm "$out/suite/vectors/V-two.json"
 holds killing_vector_goes 1
 mutants >/dev/null 2>&1
 holds stale_ones_run_again 2
+
+# Places: with threads, by the printed decoder of DEFLATE, and by kernels that no machine has beside
+# this one's.
+case $(uname -m) in x86_64) far=neon lacks=NEON;; *) far=v3 lacks=AVX2;; esac
+places() {
+    fresh
+    for d in kernel tool; do mkdir -p "$out/ref-decoder/$d"; done
+    echo 'int k;' | tee "$out/ref-decoder/kernel/k.h" >"$out/ref-decoder/kernel/k.c"
+    echo 'int t;' | tee "$out/ref-decoder/tool/threads.h" >"$out/ref-decoder/tool/threads.c"
+    echo 'int i;' >"$out/player/wasm/inflate.c"
+    printf 'Text.\n\n```c\n    v = 1;\n```\n' >"$out/spec/annex-l-deflate.md"
+    cat >>"$out/suite/mutants.list" <<END
+mutant race ref-decoder/read/g.c
+< w = 1;
+> w = 3;
+@ threads
+mutant annex spec/annex-l-deflate.md
+< v = 1;
+> v = 3;
+@ printed
+mutant away ref-decoder/kernel/k.c
+< int k;
+> int l;
+@ $far
+END
+}
+sees() { expect "$1" 0 "6 mutants, $2 with a result that holds" mutants --check; }
+places
+expect places_run 1 '6 mutants, 4 killed, 1 survived, 1 not judged: not enough' mutants
+check places_rows "$out/suite/mutants.csv" 'race,' ',killed,V-two,something else with threads' \
+    ',killed,V-two,not by annex L'
+check places_page "$out/suite/MUTANTS.md" '| not run | 1 |' '| killed | 4 (80.0 %) |' \
+    '| threads | 1 | 1 | 0 |' "* ref-decoder/kernel/k.c, for $lacks: away"
+if grep -q '^away,' "$out/suite/mutants.csv"; then fail no_row_of_absent "there is one";
+else ok no_row_of_absent; fi
+sees places_hold 5
+sed -i 's/@ threads/@ printed/' "$out/suite/mutants.list"
+sees place_of_a_mutant 4
+places; sed -i 's/w = 3/w = 4/' "$out/suite/mutants.list"; mutants >/dev/null 2>&1
+sees place_of_a_survivor 5
+echo 'int m;' >>"$out/ref-decoder/kernel/k.c"
+sees kernels_of_a_survivor 4
+places; sed -i 's/@ threads/@ moon/' "$out/suite/mutants.list"
+expect place_unknown 3 'race: no such place: @ moon' mutants --check
 
 # A broken machine, build or suite kills no mutant.
 for mood in no-build no-suite wrong; do
