@@ -103,17 +103,28 @@ class Elements(unittest.TestCase):
 
 
 class Memory(unittest.TestCase):
-    def test_what_counts(self):
-        """Symbols of the anchors that the file can hold, values that it can hold, its bytes."""
+    def setUp(self):
         payload = head_payload(MOVING)
-        h = read_header(Payload(payload, 0, len(payload)), 31, 1 << 20)
-        check_memory(h, 10000, 2000000)
-        for file_bytes, bound in ((10000, 400000), (1000000, 2000000)):
-            with self.assertRaises(Refusal) as caught:
-                check_memory(h, file_bytes, bound)
-            self.assertEqual("limit.memory", caught.exception.error)
-        h.n_anchors = h.bank_rows = 1 << 31
-        check_memory(h, 600, 30000000)
+        self.h = read_header(Payload(payload, 0, len(payload)), 31, 1 << 20)
+
+    def refused(self, file_bytes, bound):
+        with self.assertRaises(Refusal) as caught:
+            check_memory(self.h, file_bytes, bound)
+        self.assertEqual("limit.memory", caught.exception.error)
+
+    def test_bound(self):
+        """M_E of 13.3 by hand, one tile of 64: V = 643, P = 49, C = 22, F = 4, 100 anchors."""
+        need = (1 << 20) + 777 + 16 * 643 + 100 * (44 + 16) + 64 * (196 + 8 + 11) + (1 << 17)
+        check_memory(self.h, 777, need)
+        self.refused(777, need - 1)
+
+    def test_what_counts(self):
+        """Without a bound: symbols of the anchors that the file can hold, values, its bytes."""
+        check_memory(self.h, 1000000, None)
+        self.refused(1 << 28, None)
+        self.h.n_anchors = self.h.bank_rows = 1 << 31
+        check_memory(self.h, 600, None)
+        self.refused(1 << 20, None)
 
 
 class Work(unittest.TestCase):
