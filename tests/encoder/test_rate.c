@@ -194,6 +194,8 @@ static void test_quantise(void **state)
         steps[i] = (float)(0.02 + 0.01 * ref_uniform());
     w.attr[0][3] = 1e9f;
     w.attr[0][4] = -1e9f;
+    w.attr[0][5] = 40000.0f * steps[5];
+    w.attr[0][6] = -40000.0f * steps[6];
     for (int quant = TED4_QUANT_NOISE; quant <= TED4_QUANT_ROUND; quant++) {
         int raised = 0;
 

@@ -63,6 +63,22 @@ static double of_masks(const ted4_trainer *t, size_t visible)
 
 /* ---- which blocks ---- */
 
+/* All that belongs to a visible block moves with it. All blocks are visible, so that the Gaussians
+ * of block b are those with this number. */
+static void check_moved(const ted4_trainer *t, size_t visible)
+{
+    const ted4_visible_blocks *s = &t->visible_blocks;
+    const size_t b = s->block[visible], floats = (size_t)t->layout.n_channels * TED4_LANES;
+
+    assert_int_equal(s->drawn[visible], b);
+    assert_int_equal(s->lanes[visible], ted4_block_lanes(&t->anchors, b));
+    assert_ptr_equal(s->raw[visible], ted4_block(&t->anchors, TED4_ROW_VALUE, b));
+    assert_ptr_equal(s->position[visible], ted4_block(&t->anchors, TED4_ROW_POSITION, b));
+    assert_ptr_equal(s->steps[visible], ted4_block(&t->anchors, TED4_ROW_STEP, b));
+    assert_ptr_equal(s->gradient[visible], s->gradients + b * floats);
+    assert_ptr_equal(s->used[visible], s->quantised + b * floats);
+}
+
 static void test_choice(void **state)
 {
     ted4_trainer t;
@@ -78,6 +94,7 @@ static void test_choice(void **state)
             const int chosen = of_masks(&t, i) > 0;
 
             assert_int_equal(seen[t.visible_blocks.block[i]]++, 0);
+            check_moved(&t, i);
             often[t.visible_blocks.block[i]] += chosen;
             n += chosen;
         }
