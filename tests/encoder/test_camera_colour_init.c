@@ -131,23 +131,33 @@ static float worst(const ted4_colour *c, const double *gain)
     return most;
 }
 
-/* Makes a trainer and matches its cameras' colours. */
-static void matched(int n_points, const double *gain, double hidden, float tint, ted4_trainer *t,
-                    ted4_dataset *d, tiny_folder *f)
+static void load(ted4_dataset *d, const tiny_folder *f)
 {
     const ted4_dataset_options o = { .downscale = 1, .seed = 3, .cache_bytes = 1 << 20 };
     ted4_message m;
 
-    *f = tiny_new();
-    write_scene(f, n_points, gain, hidden, tint);
     if (ted4_dataset_load(d, f->path, &o, &m) != 0)
         fail_msg("%s", m.text);
     assert_int_equal(d->n_cameras, CAMERAS);
+}
+
+/* Makes a trainer and matches its cameras' colours. */
+static void match_cameras(ted4_trainer *t, ted4_dataset *d)
+{
     memset(t, 0, sizeof *t);
     t->data = d;
     ted4_normalise_scene(&t->layout.head, d);
     assert_int_equal(ted4_colour_init(&t->colour, d), 0);
     assert_int_equal(ted4_camera_colour_init(t), 0);
+}
+
+static void matched(int n_points, const double *gain, double hidden, float tint, ted4_trainer *t,
+                    ted4_dataset *d, tiny_folder *f)
+{
+    *f = tiny_new();
+    write_scene(f, n_points, gain, hidden, tint);
+    load(d, f);
+    match_cameras(t, d);
 }
 
 static const double none[3] = { 1, 1, 1 };
@@ -246,12 +256,49 @@ static void test_no_tint(void **state)
     check_alone(600, 0.05f);
 }
 
+/* Matches cameras whose pictures of frame 1 are held out. spoilt: these show something else. */
+static void match_without_frame(int spoilt, ted4_colour_map maps[CAMERAS])
+{
+    ted4_trainer t;
+    ted4_dataset d;
+    tiny_folder f = tiny_new();
+
+    write_scene(&f, 600, NULL, 0.15, 1);
+    for (int k = 0; spoilt && k < CAMERAS; k++) {
+        char name[64];
+
+        snprintf(name, sizeof name, "images/c%d_f1.png", k);
+        picture(&f, name, k, 1, 1, 0);
+    }
+    load(&d, &f);
+    for (size_t i = 0; i < d.n_pictures; i++)
+        d.pictures[i].is_test = d.pictures[i].frame == 1;
+    match_cameras(&t, &d);
+    assert_int_equal(t.colour.matched, 1);
+    memcpy(maps, t.colour.value, CAMERAS * sizeof *maps);
+    ted4_colour_finish(&t.colour);
+    ted4_dataset_free(&d);
+    tiny_free(&f);
+}
+
+/* Held-out pictures are not looked at. */
+static void test_held_out(void **state)
+{
+    ted4_colour_map plain[CAMERAS], spoilt[CAMERAS];
+
+    (void)state;
+    match_without_frame(0, plain);
+    match_without_frame(1, spoilt);
+    assert_memory_equal(plain, spoilt, sizeof plain);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(test_found), cmocka_unit_test(test_gauge),
-                                        cmocka_unit_test(test_other_colours),
-                                        cmocka_unit_test(test_few_points),
-                                        cmocka_unit_test(test_no_tint) };
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_found),         cmocka_unit_test(test_gauge),
+        cmocka_unit_test(test_other_colours), cmocka_unit_test(test_few_points),
+        cmocka_unit_test(test_no_tint),       cmocka_unit_test(test_held_out)
+    };
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
