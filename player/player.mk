@@ -74,9 +74,9 @@ $W/adapters/index.html: player/adapters/pages/index.html
 $W/adapters/%.js: player/adapters/pages/%.js $(PAGE_SRC) $(wildcard player/adapters/pages/*.js) \
     $(NPM)/installed
 	$(ESBUILD) $< --outfile=$@
-test-player: player $(ADAPTERS) $T/occluder.ted4 $B/ted4dec
+test-player: player $(ADAPTERS) $T/occluder.ted4 $B/ted4dec $B/ted4edit
 	TED4_PLAYER=$(abspath $W) TED4_SCENE=$(abspath $T/occluder.ted4) TED4_OUT=$(abspath $T) \
-	TED4_DEC=$(abspath $B/ted4dec) node --test --test-concurrency=1 player/test/*.browser.mjs
+	TED4_PROGRAMS=$(abspath $B) node --test --test-concurrency=1 player/test/*.browser.mjs
 $T/occluder.ted4: | $B/ted4scene $B/ted4enc
 	@mkdir -p $T
 	$B/ted4scene occluder -o $T/scene -f

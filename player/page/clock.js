@@ -67,6 +67,11 @@ export class Clock {
     return { num: Math.round(PARTS * this.position), den: PARTS * (this.frames - 1) };
   }
 
+  // The position as a part of the whole time, from 0 to 1; not rounded.
+  get part() {
+    return this.frames === 1 ? 0 : this.position / (this.frames - 1);
+  }
+
   // The position of a query.
   positionOf({ num, den }) {
     return den === 0 ? this.position : num / den * (this.frames - 1);

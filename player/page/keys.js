@@ -25,6 +25,7 @@ export function bindKeys(player, timeline) {
     Home: () => clock.seek(0),
     End: () => clock.seek(clock.frames - 1),
     0: () => { if (player.cameras.length > 0) player.useCamera(0); },
+    p: () => { player.followsPath = !player.followsPath; },
     h: () => document.body.classList.toggle("bare"),
     "?": help,
   };

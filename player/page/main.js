@@ -45,6 +45,7 @@ function showOpened() {
   at("camera").value = player.cameras.length > 0 ? 1 : "";
   at("camera").disabled = player.cameras.length === 0;
   at("cameras").textContent = player.cameras.length > 0 ? `of ${player.cameras.length}` : "none";
+  at("follows-path").disabled = player.file.cameras.path.length === 0;
   timeline.reset();
 }
 
@@ -95,6 +96,9 @@ function bindView() {
     const i = at("camera").valueAsNumber - 1;
     if (i in player.cameras) player.useCamera(i);
   });
+  at("follows-path").addEventListener("change", () => {
+    player.followsPath = at("follows-path").checked;
+  });
   at("looks-around").addEventListener("change", () => {
     player.navigation.looksAround = at("looks-around").checked;
   });
@@ -123,6 +127,7 @@ countPictures();
 
 function frame() {
   timeline.show();
+  at("follows-path").checked = player.followsPath;
   requestAnimationFrame(frame);
 }
 requestAnimationFrame(frame);

@@ -6,6 +6,7 @@ import { centreOf, fitted } from "./camera.js";
 import { bytesByType, camerasOf, chunksOf, metaOf } from "./chunks.js";
 import { Clock } from "./clock.js";
 import { Navigation } from "./navigation.js";
+import { cameraOnPath, placeOnPath } from "./path.js";
 import { depthAhead, startCamera } from "./start.js";
 import { View } from "./view.js";
 
@@ -27,6 +28,7 @@ export class Player {
   #shown = null; // what the Gaussians on the screen were evaluated for
   #pending = null; // the evaluation under way
   #pose = null; // the camera that the view was given
+  #followed = null; // while the path is followed: { camera, time } of it
   #last = 0;
   #failed;
 
@@ -39,7 +41,10 @@ export class Player {
     this.#client = new Ted4Client(worker);
     this.#loaded = this.#client.load(wasm);
     // Scrubbing does not wait for the next frame of the display.
-    this.clock.sought = () => this.#evaluate();
+    this.clock.sought = () => {
+      this.#followPath();
+      this.#evaluate();
+    };
   }
 
   async #startView() {
@@ -61,7 +66,7 @@ export class Player {
     const start = isSeen ? null : startCamera(await scene.gaussians(0, 1), up);
     this.#scene?.close();
     this.#scene = scene;
-    this.#shown = null;
+    this.#shown = this.#followed = null;
     this.statistics.firstPicture = 0;
     this.file = {
       name, bytes, since, info: scene.info, chunks: bytesByType(chunks), meta: metaOf(chunks),
@@ -82,8 +87,30 @@ export class Player {
   // Looks through a camera of the file, at its time.
   useCamera(i) {
     const camera = this.cameras[i];
+    this.followsPath = false;
     this.navigation.camera = camera;
     this.clock.seek(this.clock.positionOf(camera));
+  }
+
+  // Whether the camera is the one that the file's path has at the time that is shown. It ends when
+  // the camera is moved in another way.
+  get followsPath() {
+    return this.#followed !== null;
+  }
+
+  set followsPath(isWanted) {
+    const isPossible = this.file !== null && this.file.cameras.path.length > 0;
+    this.#followed = isWanted && isPossible ? { camera: this.navigation.camera, time: -1 } : null;
+    this.#followPath();
+  }
+
+  #followPath() {
+    if (this.#followed?.camera !== this.navigation.camera) this.#followed = null;
+    const time = this.clock.part;
+    if (this.#followed === null || this.#followed.time === time) return;
+    const { path } = this.file.cameras;
+    this.navigation.camera = cameraOnPath(path, placeOnPath(path, time));
+    this.#followed = { camera: this.navigation.camera, time };
   }
 
   // The bytes of the file by element. Slow: the file is decoded again.
@@ -102,6 +129,7 @@ export class Player {
     this.clock.advance(now);
     this.navigation.fly((now - this.#last) / 1000);
     this.#last = now;
+    this.#followPath();
     this.#evaluate();
     if (this.file === null) return;
     this.#followCamera();
@@ -167,6 +195,6 @@ export class Player {
   // Whether the wanted time and camera are on the screen.
   get isSettled() {
     return this.file !== null && this.#pending === null && this.#shown === this.#wanted().key &&
-      this.#view.isSettled;
+      this.#pose?.camera === this.navigation.camera && this.#view.isSettled;
   }
 }

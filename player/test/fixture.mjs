@@ -15,14 +15,18 @@ function needed(name) {
 
 export const SCENE = needed("TED4_SCENE"); // a .ted4 file of the scene "occluder", z up
 export const PLAYER = needed("TED4_PLAYER"); // folder of the built player
-const DECODER = needed("TED4_DEC");
+const PROGRAMS = needed("TED4_PROGRAMS"); // folder of ted4dec and ted4edit
 export const OUT = process.env.TED4_OUT ?? mkdtempSync(join(tmpdir(), "ted4-player-"));
 
 const LENS = { width: 320, height: 240, fx: 320, fy: 320, cx: 160, cy: 120 };
 export const CAMERA = lookingAt(LENS, [-1.3, -3.2, 1.9], [0, 0, 0.3], [0, 0, 1]);
 
 export function decode(...args) {
-  return execFileSync(DECODER, args, { encoding: "utf8" });
+  return execFileSync(join(PROGRAMS, "ted4dec"), args, { encoding: "utf8" });
+}
+
+export function edit(...args) {
+  execFileSync(join(PROGRAMS, "ted4edit"), args);
 }
 
 // The PNG, base64, of the camera at a time, by the decoder.

@@ -8,7 +8,8 @@ import { basename, dirname, join } from "node:path";
 import { after, before, test } from "node:test";
 import { pathToFileURL } from "node:url";
 import { Browser } from "./browser.mjs";
-import { CAMERA, decode, keep, OUT, PLAYER, rendered, SCENE } from "./fixture.mjs";
+import { CAMERA, decode, edit, keep, OUT, PLAYER, rendered, SCENE } from "./fixture.mjs";
+import { lookingAt } from "../page/camera.js";
 import { psnr, sideBySide } from "./pictures.mjs";
 import { serve } from "./server.mjs";
 
@@ -157,6 +158,39 @@ test("nothing is asked for elsewhere, and nothing fails on the way", () => {
   assert.deepEqual(elsewhere, []);
   assert.deepEqual(page.errors, []);
 });
+
+const KEYS = [[-1.3, -3.2, 1.9], [1.6, -3.1, 1.2], [3.2, -1, 2.2]].map((eye, i) =>
+  ({ ...lookingAt(CAMERA, eye, [0, 0, 0.3], [0, 0, 1]), time: i / 2 }));
+
+test("the path of a file is followed in time, as ted4dec --path does, until the camera is moved",
+  async (t) => {
+    const keys = join(OUT, "path.json"), file = join(OUT, "path.ted4"), frame = 4;
+    writeFileSync(keys, JSON.stringify(KEYS));
+    edit(SCENE, "-o", file, "--path", keys, "-f");
+    const along = await browser.page(CAMERA.width, CAMERA.height);
+    await along.open(`${server.origin}/?file=path.ted4`);
+    await along.until("globalThis.ted4Player?.isSettled");
+    const box = `document.getElementById("follows-path")`;
+    assert.deepEqual(await along.evaluate(`[${box}.disabled, ${box}.checked]`), [false, false]);
+    await along.press("p", "KeyP");
+    await along.evaluate(`document.body.classList.add("bare"); ted4Player.clock.seek(${frame}); 0`);
+    await along.until(`ted4Player.isSettled && ${box}.checked`);
+    decode(file, "--render", join(OUT, "along%d.png"), "--path", "file", "-f", "-q");
+    const reference = readFileSync(join(OUT, `along${frame}.png`)).toString("base64");
+    const shot = await along.screenshot(), decibels = await psnr(along, shot, reference);
+    keep("along.jpg", await sideBySide(along, [shot, reference]));
+    t.diagnostic(`frame ${frame}: ${decibels.toFixed(1)} dB`);
+    assert.ok(decibels >= LEAST_PSNR, `${decibels} dB`);
+    await along.press(" ", "Space");
+    await along.until(`${POSITION} > ${frame} + 2`);
+    await along.press(" ", "Space");
+    await along.until("ted4Player.isSettled");
+    assert.equal(await along.evaluate("ted4Player.followsPath"), true);
+    await along.drag(100, 100, 180, 110);
+    await along.until(`ted4Player.isSettled && !${box}.checked`);
+    assert.equal(await along.evaluate("ted4Player.followsPath"), false);
+    assert.deepEqual(along.errors, []);
+  });
 
 test("a broken file is refused with identifier and offset", async () => {
   const bytes = readFileSync(SCENE);

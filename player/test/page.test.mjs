@@ -5,6 +5,7 @@ import { test } from "node:test";
 import { centreOf, fitted, forward, lookingAt, orbited } from "../page/camera.js";
 import { bytesByType, camerasOf, chunksOf, metaOf } from "../page/chunks.js";
 import { Clock } from "../page/clock.js";
+import { cameraOnPath, placeOnPath } from "../page/path.js";
 
 const IDENTITY = [1, 0, 0, 0, 1, 0, 0, 0, 1];
 
@@ -150,4 +151,33 @@ test("orbiting keeps the pivot before the camera, and stops below the pole", () 
 test("a picture of other sides shows all of the old one", () => {
   const { fx, cx, cy, width, height } = fitted(camera, 8, 8);
   assert.deepEqual([fx, cx, cy, width, height], [6, 4, 4, 8, 8]);
+});
+
+const timed = (...times) => times.map(([num, den]) => ({ num, den }));
+
+test("keys of a path belong to their times", () => {
+  const path = timed([1, 4], [2, 4], [2, 4], [4, 4]);
+  assert.deepEqual([0, 0.25, 0.375, 0.5, 0.75, 1].map((t) => placeOnPath(path, t)),
+    [0, 0, 0.5, 2, 2.5, 3]);
+  assert.equal(placeOnPath(timed([1, 4]), 0.7), 0);
+});
+
+test("keys without times, or with times that decrease, share out the whole time", () => {
+  for (const path of [timed([0, 1], [1, 0], [1, 1]), timed([0, 1], [1, 1], [1, 2])])
+    assert.deepEqual([0, 0.25, 1].map((t) => placeOnPath(path, t)), [0, 0.5, 2]);
+});
+
+test("a camera on a path is at its keys, and between them on a smooth way", () => {
+  const lens = { width: 4, height: 2, fx: 3, fy: 3, cx: 2, cy: 1 };
+  const eyes = [[0, -5, 1], [5, 0, 1], [0, 5, 1]];
+  const path = eyes.map((eye) => lookingAt(lens, eye, [0, 0, 1], [0, 0, 1]));
+  path[2] = { ...path[2], width: 8, height: 4, fx: 12, fy: 12, cx: 4, cy: 2 };
+  eyes.forEach((eye, i) => {
+    near(centreOf(cameraOnPath(path, i)), eye);
+    near(cameraOnPath(path, i).R, path[i].R);
+  });
+  near(forward(cameraOnPath(path, 0.5)), [-Math.SQRT1_2, Math.SQRT1_2, 0]);
+  near(centreOf(cameraOnPath(path, 0.5)), [2.8125, -2.8125, 1]);
+  assert.deepEqual([0.5, 1.5, 2].map((place) => cameraOnPath(path, place).fx), [3, 4.5, 6]);
+  near(cameraOnPath(path.slice(0, 1), 0).R, path[0].R);
 });
