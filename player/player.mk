@@ -40,7 +40,8 @@ deps-player: deps
 # The page (page/), by esbuild and the packages that player/package-lock.json pins; they lie in the
 # build folder. The licence of PlayCanvas comes first in player.js.
 NPM     = $W/npm
-ESBUILD = NODE_PATH=$(abspath $(NPM)/node_modules) $(NPM)/node_modules/.bin/esbuild --bundle \
+BIN     = $(NPM)/node_modules/.bin
+ESBUILD = NODE_PATH=$(abspath $(NPM)/node_modules) $(BIN)/esbuild --bundle \
           --minify --format=iife --target=es2022 --log-level=warning
 PAGE_LICENCE = $(NPM)/node_modules/playcanvas/LICENSE
 PAGE_SRC = $(wildcard player/page/*.js player/src/*.js player/adapters/*.js)
@@ -66,7 +67,7 @@ player-html: player
 .PHONY: player player-html
 
 # The page, and those of the adapters, in headless Chromium, with a small file that is trained for
-# it.
+# it; what splat-transform makes of that file's exports.
 T       = $W/test
 $W/adapters/index.html: player/adapters/pages/index.html
 	@mkdir -p $(@D)
@@ -76,7 +77,8 @@ $W/adapters/%.js: player/adapters/pages/%.js $(PAGE_SRC) $(wildcard player/adapt
 	$(ESBUILD) $< --outfile=$@
 test-player: player $(ADAPTERS) $T/occluder.ted4 $B/ted4dec $B/ted4edit
 	TED4_PLAYER=$(abspath $W) TED4_SCENE=$(abspath $T/occluder.ted4) TED4_OUT=$(abspath $T) \
-	TED4_PROGRAMS=$(abspath $B) node --test --test-concurrency=1 player/test/*.browser.mjs
+	TED4_PROGRAMS=$(abspath $B) TED4_SPLAT_TRANSFORM=$(abspath $(BIN)/splat-transform) \
+	    node --test --test-concurrency=1 player/test/*.browser.mjs player/test/conversions.mjs
 $T/occluder.ted4: | $B/ted4scene $B/ted4enc
 	@mkdir -p $T
 	$B/ted4scene occluder -o $T/scene -f

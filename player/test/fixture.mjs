@@ -7,7 +7,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { lookingAt } from "../page/camera.js";
 
-function needed(name) {
+export function needed(name) {
   const value = process.env[name];
   if (value === undefined) throw new Error(`${name} is not set: run make test-player`);
   return value;
