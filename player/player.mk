@@ -67,7 +67,7 @@ player-html: player
 .PHONY: player player-html
 
 # The page, and those of the adapters, in headless Chromium, with a small file that is trained for
-# it; what splat-transform makes of that file's exports.
+# it; what splat-transform makes of that file's exports; types, by TypeScript.
 T       = $W/test
 $W/adapters/index.html: player/adapters/pages/index.html
 	@mkdir -p $(@D)
@@ -78,7 +78,8 @@ $W/adapters/%.js: player/adapters/pages/%.js $(PAGE_SRC) $(wildcard player/adapt
 test-player: player $(ADAPTERS) $T/occluder.ted4 $B/ted4dec $B/ted4edit
 	TED4_PLAYER=$(abspath $W) TED4_SCENE=$(abspath $T/occluder.ted4) TED4_OUT=$(abspath $T) \
 	TED4_PROGRAMS=$(abspath $B) TED4_SPLAT_TRANSFORM=$(abspath $(BIN)/splat-transform) \
-	    node --test --test-concurrency=1 player/test/*.browser.mjs player/test/conversions.mjs
+	TED4_MODULES=$(abspath $(NPM)/node_modules) node --test --test-concurrency=1 \
+	    player/test/*.browser.mjs player/test/conversions.mjs player/test/types.mjs
 $T/occluder.ted4: | $B/ted4scene $B/ted4enc
 	@mkdir -p $T
 	$B/ted4scene occluder -o $T/scene -f

@@ -60,7 +60,7 @@ export interface Element {
   symbols: number;
 }
 
-type Vector = [number, number, number];
+export type Vector = [number, number, number];
 type Source = WebAssembly.Module | BufferSource | Response | Promise<Response> | string | URL;
 
 export class Scene {

@@ -1,0 +1,10 @@
+// Types of adapters/spark.js. SPDX-License-Identifier: BSD-2-Clause
+import type { PackedSplats } from "@sparkjsdev/spark";
+import type { Gaussians } from "../src/index.js";
+
+/** For n Gaussians, 1 or more: the splats of a SplatMesh, { packedSplats }. */
+export function createPackedSplats(n: number): PackedSplats;
+
+/** Puts Gaussians into splats that were made for as many of them. The mesh then needs
+ *  updateVersion(). */
+export function updatePackedSplats(packed: PackedSplats, gaussians: Gaussians): void;

@@ -1,0 +1,59 @@
+// types.mjs - the types of the package: a program in TypeScript (types/consumer.ts) compiles with
+// the package as npm would install it, and the types name what the modules export.
+// SPDX-License-Identifier: BSD-2-Clause
+import assert from "node:assert/strict";
+import { execFileSync, spawnSync } from "node:child_process";
+import { copyFileSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, symlinkSync,
+  writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join, resolve } from "node:path";
+import { after, before, test } from "node:test";
+
+// node_modules with TypeScript, PlayCanvas and Spark
+const MODULES = process.env.TED4_MODULES;
+if (MODULES === undefined) throw new Error("TED4_MODULES is not set: run make test-player");
+const PACKAGE = resolve(import.meta.dirname, "..");
+const OPTIONS = {
+  module: "nodenext", target: "es2022", lib: ["es2022", "dom"], strict: true, noEmit: true,
+  skipLibCheck: true, types: [],
+};
+let folder;
+
+before(() => {
+  folder = mkdtempSync(join(tmpdir(), "ted4-types-"));
+  const modules = join(folder, "node_modules"), ours = join(modules, "ted4");
+  mkdirSync(ours, { recursive: true });
+  const [{ filename }] = JSON.parse(execFileSync("npm",
+    ["pack", "--json", "--offline", "--ignore-scripts", "--pack-destination", folder],
+    { cwd: PACKAGE, encoding: "utf8", stdio: ["ignore", "pipe", "inherit"] }));
+  execFileSync("tar", ["-xzf", join(folder, filename), "-C", ours, "--strip-components=1"]);
+  for (const name of ["playcanvas", "@sparkjsdev", "three"])
+    symlinkSync(join(MODULES, name), join(modules, name));
+  writeFileSync(join(folder, "package.json"), `{ "type": "module" }`);
+  writeFileSync(join(folder, "tsconfig.json"),
+    JSON.stringify({ compilerOptions: OPTIONS, files: ["consumer.ts"] }));
+  copyFileSync(join(import.meta.dirname, "types/consumer.ts"), join(folder, "consumer.ts"));
+});
+
+after(() => rmSync(folder, { recursive: true }));
+
+test("a program in TypeScript compiles, and its mistakes are found", () => {
+  const { status, stdout } = spawnSync(join(MODULES, ".bin/tsc"), ["-p", folder],
+    { encoding: "utf8" });
+  assert.equal(status, 0, stdout);
+});
+
+function exported(file) {
+  const found = readFileSync(file, "utf8")
+    .matchAll(/^export (?:async )?(?:class|function|const) (\w+)/gm);
+  return Array.from(found, ([, name]) => name).sort();
+}
+
+test("types declare what the adapters export", () => {
+  const adapters = join(PACKAGE, "adapters");
+  const files = readdirSync(adapters).filter((name) => name.endsWith(".js"));
+  assert.ok(files.length > 0);
+  for (const file of files)
+    assert.deepEqual(exported(join(adapters, file.replace(/js$/, "d.ts"))),
+      exported(join(adapters, file)), file);
+});

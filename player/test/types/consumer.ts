@@ -1,0 +1,45 @@
+// consumer.ts - a program in TypeScript that uses every function of the adapters; types.mjs has it
+// compiled. SPDX-License-Identifier: BSD-2-Clause
+import { SplatMesh, type PackedSplats } from "@sparkjsdev/spark";
+import type { GraphicsDevice, GSplatContainer, GSplatData, Quat } from "playcanvas";
+import { Decoder, Ted4Client, type Gaussians, type Vector } from "ted4";
+import { drawAsAnnexI } from "ted4/adapters/playcanvas-kernel.js";
+import { createContainer, updateContainer } from "ted4/adapters/playcanvas.js";
+import { createPackedSplats, updatePackedSplats } from "ted4/adapters/spark.js";
+import { FrameSource, gsplatData } from "ted4/adapters/supersplat.js";
+
+const eye: Vector = [0, 0, -4];
+
+export async function useAll(device: GraphicsDevice, bytes: Uint8Array): Promise<Quat> {
+  const decoder = await Decoder.load("ted4.wasm");
+  const scene = decoder.open(bytes);
+  const gaussians: Gaussians = scene.frame(0, eye);
+  drawAsAnnexI(device);
+  const container: GSplatContainer = createContainer(device, gaussians.n);
+  updateContainer(container, gaussians);
+  const packedSplats: PackedSplats = createPackedSplats(gaussians.n);
+  updatePackedSplats(packedSplats, gaussians);
+  new SplatMesh({ packedSplats }).updateVersion();
+  const data: GSplatData = gsplatData(gaussians);
+  const source = new FrameSource(scene, (frame, name) => `${name}: ${frame.numSplats}`, eye);
+  const { asset, rotation } = await source.getFrame(source.frameCount - 1);
+  console.log(asset.toUpperCase(), data.numSplats);
+  source.destroy();
+  return rotation;
+}
+
+export async function useInWorker(bytes: ArrayBuffer): Promise<FrameSource<GSplatData>> {
+  const scene = await new Ted4Client().open(bytes);
+  return new FrameSource(scene, (frame) => frame, eye, [0, 0, 1]);
+}
+
+export function misuse(device: GraphicsDevice, source: FrameSource<string>): void {
+  // @ts-expect-error: the number of Gaussians is missing.
+  createContainer(device);
+  // @ts-expect-error: no Gaussians.
+  updatePackedSplats(createPackedSplats(1), { n: 1 });
+  // @ts-expect-error: there is no such member.
+  source.frames();
+  // @ts-expect-error: only the constructor sets it.
+  source.frameCount = 3;
+}
