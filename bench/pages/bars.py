@@ -27,7 +27,7 @@ class Bars:
         verdict = said = self.WORDS[ok]
         self.verdicts[verdict] += 1
         if more:
-            said += f"; {more}"
+            said += f": {more}"
         if first is not None and ok is not None:
             self.changed.append((str(number), what, verdict, first))
             said += f"; as first defined: {self.WORDS[first.ok]}"

@@ -68,12 +68,13 @@ def made_with(runs):
 
 
 class Runs:
-    """all: in the order of the table. scenes, variants: in the order in which they first come."""
+    """all: in the order of the table. scenes, variants: in the order in which they first come.
+    where: the folder of each scene."""
 
     def __init__(self, wanted, states, csv):
         self.all, self.tags, self.scenes, self.variants = [], {}, [], []
         self.strangers = self.others = 0
-        self.by_variant = {}
+        self.by_variant, self.where = {}, {}
         for run in wanted:
             run.__class__ = Measured
             run.state = states.get(run.tag, "missing")
@@ -85,6 +86,7 @@ class Runs:
     def add(self, run):
         self.all.append(run)
         self.tags[run.tag] = run
+        self.where[run.scene] = run.where
         if run.scene not in self.scenes:
             self.scenes.append(run.scene)
         if run.variant not in self.variants:
@@ -133,8 +135,10 @@ class Runs:
         return self.first(scene, variant).in_group(group)
 
     def curve_scenes(self):
-        """Scenes with the whole method at more than one lambda."""
-        return [scene for scene in self.scenes if len(self.of(scene, "whole")) > 1]
+        """Scenes that rate and distortion are shown on: the whole method at more than one lambda,
+        in the group "rd"."""
+        return [scene for scene in self.scenes if len(self.of(scene, "whole")) > 1
+                and self.wants(scene, "whole", "rd")]
 
     def summary(self):
         """How many of the wanted rows are there, as a sentence without its full stop."""

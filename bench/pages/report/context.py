@@ -9,11 +9,12 @@ from ..words import Page
 class Report:
     """runs: wanted runs and rows. results: folder of sweep.csv, logs and pictures. pages: folder
     of raster.md and the other pages that it takes numbers from. tables: the page of all tables.
-    family: all comparisons over seeds."""
+    family: all comparisons over seeds. grounds: of each bar about a part of the method that has
+    rows, the scenes."""
 
     def __init__(self, runs, charts, results, pages):
         self.runs, self.charts, self.results, self.pages = runs, charts, results, pages
-        self.tables, self.bars = Page(), Bars()
+        self.tables, self.bars, self.grounds = Page(), Bars(), []
         self.scenes, self.family = runs.curve_scenes(), Family(runs)
         self.styles = SceneStyles(self.scenes)
 

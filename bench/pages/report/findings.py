@@ -3,12 +3,12 @@
 A finding is a function of the report; it returns its text and the runs behind it, or None while one
 of them is missing.
 SPDX-License-Identifier: BSD-2-Clause"""
-from ..compare import Change, seed_spread, whole_run
+from ..compare import Change, base_of, seed_spread, whole_run, within_seeds
 from ..rows import mark
 from ..seeded import Seeded
-from ..words import anchor, fixed
+from ..words import anchor, fixed, signed
 from . import estimate, lives, precision, singles, variant_bars
-from .held_out import counted, held_out
+from .held_out import cameras_text, counted, folders
 
 SCENE = "kitchen"
 
@@ -58,45 +58,91 @@ def rate(report):
                "Not on every scene do both fall with every step."), rows)
 
 
+def by_scene(values, text):
+    """(scene, value) pairs in words; "alone" where there is one."""
+    alone = " alone" if len(values) == 1 else ""
+    return " and ".join(f"{text(value)} (`{scene}`{alone})" for scene, value in values)
+
+
+def changes(report, variant):
+    """(scene, Change) where the bars judge a variant."""
+    runs, base = report.runs, base_of(variant)
+    return [(scene, Change(runs, scene, variant)) for scene in variant_bars.scenes_of(runs, variant)
+            if variant_bars.has_rows(runs, scene, variant, base)]
+
+
+def seeded_on(report, variant):
+    """Comparisons over seeds of a variant, by scene."""
+    found = [Seeded(report.runs, scene, variant)
+             for scene in variant_bars.scenes_of(report.runs, variant)]
+    return [seeded for seeded in found if seeded.changes]
+
+
+def compared_on(all_seeded, more=""):
+    """Means over seeds on all scenes. more: after the first one."""
+    alone = " alone" if len(all_seeded) == 1 else ""
+    return " and ".join(f"{compared(seeded)}{more if k == 0 else ''} on `{seeded.scene}`{alone} "
+                        f"({len(seeded.changes)} seeds)" for k, seeded in enumerate(all_seeded))
+
+
+def rows_of(report, variant, scenes):
+    return [run for scene in scenes for one in (variant, base_of(variant))
+            for run in report.runs.of(scene, one)]
+
+
+def rows_over_seeds(all_seeded):
+    return [run for seeded in all_seeded for pair in seeded.pairs for run in pair]
+
+
 def activation(report):
-    runs = report.runs
-    change = Change(runs, SCENE, "noactive")
-    if change.psnr is None:
+    there = [(scene, change.psnr) for scene, change in changes(report, "noactive")
+             if change.psnr is not None]
+    if not there:
         return None
-    recipe = Seeded(runs, SCENE, "recipe_noactive")
-    more = ""
-    if recipe.changes:
-        more = (" The paper's recipe alone, which grows no short-lived anchors there, is "
-                f"{compared(recipe)} without them{together(report, recipe)}.")
-    return (f"Without life spans of anchors `{SCENE}` {loses(change.psnr)} at equal bytes.{more}",
-            runs.of(SCENE, "noactive") + runs.of(SCENE, "whole")
-            + [run for pair in recipe.pairs for run in pair])
+    text = ("Without life spans of anchors PSNR at equal bytes changes by "
+            + by_scene(there, lambda psnr: signed(psnr, 2, " dB")) + ".")
+    recipe = seeded_on(report, "recipe_noactive")
+    if recipe:
+        text += (f" Without them the paper's recipe alone is {compared_on(recipe)}"
+                 f"{together(report, *recipe)}.")
+    return text, (rows_of(report, "noactive", [scene for scene, _ in there])
+                  + rows_over_seeds(recipe))
 
 
 def deformation(report):
-    seeded = Seeded(report.runs, SCENE, "inr")
-    recipe = Seeded(report.runs, SCENE, "recipe_inr")
-    if not seeded.changes or not recipe.changes:
+    seeded, recipe = seeded_on(report, "inr"), seeded_on(report, "recipe_inr")
+    if not seeded or not recipe:
         return None
-    return ("In the paper's recipe alone, a network of place and time as wide as F_deform is "
-            f"{compared(recipe)} than the bank of motions on `{SCENE}` ({len(recipe.changes)} "
-            "seeds). Beside multi-view seeding, which does much of the same work, it is "
-            f"{compared(seeded)}{together(report, seeded, recipe)}.",
-            [run for one in (seeded, recipe) for pair in one.pairs for run in pair])
+    known = [one.scene for one in seeded]
+    single = [(scene, change.psnr) for scene, change in changes(report, "inr")
+              if change.psnr is not None and scene not in known]
+    chance = all(within_seeds(report.runs, scene, change)
+                 for scene, change in changes(report, "inr") if scene not in known)
+    text = ("In the paper's recipe alone, a network of place and time as wide as F_deform is "
+            f"{compared_on(recipe, ' than the bank of motions')}. Beside multi-view seeding, which "
+            f"does much of the same work, it is {compared_on(seeded)}"
+            f"{together(report, *seeded, *recipe)}.")
+    if single:
+        text += " At one seed it " + " and ".join(
+            f"{loses(psnr)} on `{scene}`" for scene, psnr in single) + (
+                ", less than seeds differ." if chance else ".")
+    return text, (rows_over_seeds(seeded + recipe)
+                  + rows_of(report, "inr", [scene for scene, _ in single]))
 
 
 def prior(report):
-    runs = report.runs
-    by_default = Change(runs, SCENE, "factorised_flat_auto")
-    as_fixed = Change(runs, SCENE, "factorised_flat")
-    if by_default.bd_rate is None or as_fixed.bd_rate is None:
+    by_default, as_fixed = (
+        [(scene, change.bd_rate) for scene, change in changes(report, variant)
+         if change.bd_rate is not None] for variant in ("factorised_flat_auto", "factorised_flat"))
+    if not by_default or not as_fixed:
         return None
-    return (f"With a factorised prior in the place of the hyperprior, files of `{SCENE}` take "
-            f"{by_default.bd_rate:.1f} % more bytes at equal PSNR (BD-rate) when each chooses its "
-            f"capacity, as by default, and {as_fixed.bd_rate:.1f} % more when the capacity is "
-            "fixed. The paper's figure is 25 %.",
-            [run for variant in ("factorised_flat_auto", "whole_auto", "factorised_flat", "whole")
-             for run in runs.of(SCENE, variant)])
+    rates = [by_scene(known, lambda rate: f"{rate:.1f} %") for known in (as_fixed, by_default)]
+    return ("With a factorised prior in the place of the hyperprior, files take "
+            f"{rates[0]} more bytes at equal PSNR (BD-rate) when the capacity is fixed, and "
+            f"{rates[1]} when each chooses its capacity, as by default. The paper's figure is "
+            "25 %.",
+            rows_of(report, "factorised_flat_auto", [scene for scene, _ in by_default])
+            + rows_of(report, "factorised_flat", [scene for scene, _ in as_fixed]))
 
 
 def still(report):
@@ -127,9 +173,9 @@ def colour(report):
     gain, loss = singles.difference(with_it, without), singles.difference(plain, with_it)
     if gain is None or loss is None:
         return None
-    return (f"Where the colours of cameras differ (`kitchen_tint`), correcting them {loses(gain)}; "
-            f"the result lies {abs(loss):.2f} dB {'below' if loss > 0 else 'above'} that of "
-            "cameras that agree.",
+    return ("Where the colours of cameras differ (`kitchen_tint` alone), correcting them "
+            f"{loses(gain)}; the result lies {abs(loss):.2f} dB "
+            f"{'below' if loss > 0 else 'above'} that of cameras that agree.",
             [with_it, without, plain])
 
 
@@ -201,19 +247,19 @@ def section(report, page):
 
 
 def ground(report):
-    """What the verdicts on variants rest on, and what other scenes say."""
-    found = held_out(report, SCENE)
-    text = (f"What each part is worth (bar 1) is judged on one scene, `{SCENE}`, by "
-            + (counted(found[0], "held-out camera") if found else "an unknown number of cameras")
-            + "; more held-out cameras would need new trainings. " + report.family.holds())
-    both = {scene: variant_bars.signs(report.runs, SCENE, scene) for scene in report.runs.scenes
-            if scene != SCENE}
-    agreeing = [f"{sum(a == b for a, b in pairs)} of {len(pairs)} on `{scene}`"
-                for scene, pairs in both.items() if pairs]
-    if agreeing:
-        text += (" Other scenes have some of these variants, most at one seed; the difference has "
-                 f"the same sign there for {', '.join(agreeing)}.")
-    return text
+    """What the verdicts on parts of the method rest on."""
+    alone = [scenes for scenes in report.grounds if len(folders(report, scenes)) < 2]
+    text = ("What each part is worth (bar 1) is judged on every scene that has its rows, and no "
+            "bar is met on one scene alone. ")
+    if report.grounds:
+        text += (f"Of {counted(len(report.grounds), 'such verdict')} "
+                 f"{len(report.grounds) - len(alone)} rest on more than one scene")
+    if alone:
+        scenes = list(dict.fromkeys(scene for one in alone for scene in one))
+        text += (f", and {len(alone)} on one alone (" + ", ".join(f"`{one}`" for one in scenes)
+                 + f", {cameras_text(report, scenes)})")
+    return (text + ". The runs that would add scenes, seeds and a second held-out camera are "
+            "listed in [sweep.txt](sweep.txt). " + report.family.holds())
 
 
 def open_section(report, page):
@@ -228,5 +274,6 @@ def open_section(report, page):
     for wanted in ("**missed**", "cannot be said", "not run yet"):
         for row in bars.rows:
             if row.verdict == wanted:
+                more = row.said[len(row.verdict):].lstrip(":; ")
                 page.item(f"{row.verdict}: {row.what} (asked: {row.limit}"
-                          f"{row.said[len(row.verdict):]})")
+                          f"{more and f'; {more}'})")

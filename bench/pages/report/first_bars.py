@@ -13,7 +13,8 @@ def one_seed(runs, scene, variant, what):
         return None
     measured = (f"PSNR at equal bytes {signed(change.psnr, 2, ' dB')}; nearest "
                 f"{change.near_words()}")
-    return First(f"{what}, at one seed", measured, "?" if change.worse is None else change.worse)
+    return First(f"on {scene}: {what}, at one seed", measured,
+                 "?" if change.worse is None else change.worse)
 
 
 def concat(runs, scene):
@@ -39,7 +40,7 @@ def nomotion(runs, scene):
     if not change.runs:
         return None
     loss = change.near_psnr if change.psnr is None else change.psnr
-    return First("no deformation, all else kept: at least 1 dB worse, at one seed",
+    return First(f"on {scene}: no deformation, all else kept: at least 1 dB worse, at one seed",
                  signed(loss, 2, " dB"), loss <= -1)
 
 
@@ -48,6 +49,6 @@ def prior(runs, scene):
     change = Change(runs, scene, "factorised")
     if change.rate is None:
         return None
-    return First("a factorised prior with autoregression, capacity fixed, a third of the steps of "
-                 "preset fast, by the mean of the rates at equal PSNR: at least 10 %",
+    return First(f"on {scene}: a factorised prior with autoregression, capacity fixed, a third of "
+                 "the steps of preset fast, by the mean of the rates at equal PSNR: at least 10 %",
                  signed(change.rate, 1, " %"), change.rate >= 10)

@@ -1,11 +1,12 @@
-"""What a verdict rests on: scenes, held-out cameras and pictures, seeds. bench/held-out.csv tells
-the cameras.
+"""What verdicts rest on: scenes, held-out cameras and pictures, seeds. bench/held-out.csv tells the
+cameras.
 SPDX-License-Identifier: BSD-2-Clause"""
 import csv
 
 
 def held_out(report, scene):
-    """(cameras, pictures) that training never saw; None where the file does not tell."""
+    """(cameras, pictures) that training never saw, no camera where pictures of the training cameras
+    at other times are held out; None where the file does not tell."""
     try:
         with open(f"{report.results}/held-out.csv", encoding="utf-8") as file:
             for row in csv.DictReader(file):
@@ -20,9 +21,28 @@ def counted(number, word):
     return f"{number} {word}{'' if number == 1 else 's'}"
 
 
-def rests_on(report, scene, seeds):
-    """The same in words, to be added to what was measured."""
-    found = held_out(report, scene)
-    cameras = (f"{counted(found[0], 'held-out camera')} ({counted(found[1], 'picture')})" if found
-               else "unknown held-out cameras")
-    return f"; rests on 1 scene, {cameras}, {counted(seeds, 'seed')}"
+def folders(report, scenes):
+    """The folders of scenes of the table: the same folder may be there more than once, each time
+    with another camera held out."""
+    return {report.runs.where[scene] for scene in scenes}
+
+
+def cameras(report, scenes):
+    """How many held-out cameras scenes have together; None where one of them is not known."""
+    found = [held_out(report, scene) for scene in scenes]
+    return None if None in found else sum(one[0] for one in found)
+
+
+def cameras_text(report, scenes):
+    number = cameras(report, scenes)
+    return "unknown held-out cameras" if number is None else counted(number, "held-out camera")
+
+
+def rests_on(report, seeds):
+    """In words. seeds: how many, by scene."""
+    found = [held_out(report, scene) for scene in seeds]
+    pictures = "" if None in found else f" ({counted(sum(one[1] for one in found), 'picture')})"
+    least, most = min(seeds.values()), max(seeds.values())
+    return (f"Rests on {counted(len(folders(report, seeds)), 'scene')}, "
+            f"{cameras_text(report, seeds)}{pictures}, "
+            f"{'' if least == most else f'{least} to '}{counted(most, 'seed')}")

@@ -14,7 +14,7 @@ def write(runs, charts, results, pages):
     report = Report(runs, charts, results, pages)
     rate.section(report)
     variants.section(report)
-    variant_bars.add_bars(report, "kitchen")
+    variant_bars.add_bars(report)
     singles.medium_section(report)
     singles.tint_section(report)
     singles.still_section(report)
@@ -42,7 +42,11 @@ def tables_text(report):
     head.prose(report.runs.summary() + ".")
     head.heading("Bars")
     head.prose("""The bars are those of the method, by number; "not run yet" stands wherever a run
-        is missing.""")
+        is missing. A bar about a part of the method (1) is judged on every scene that has rows of
+        both sides, except where nothing moves: by BD-rate or PSNR at equal bytes, over seeds where
+        one seed cannot tell. It is met if it is met on each of these scenes, and if they are at
+        least two with more than one held-out camera together; it is missed if one of them misses
+        it.""")
     head.prose(report.bars.summary())
     report.bars.show(head, "command, then `make report`")
     head.say()

@@ -1,4 +1,4 @@
-"""What each part of the method is worth on a scene: the bars of the variants.
+"""What each part of the method is worth: the bars of the variants.
 SPDX-License-Identifier: BSD-2-Clause"""
 from collections import namedtuple
 
@@ -8,12 +8,14 @@ from ..seeded import Seeded, seeded_run
 from ..words import fixed, signed
 from . import first_bars
 from .context import sweep
-from .held_out import rests_on
+from .over_scenes import Judged, add_bar
 
+FIRST = "kitchen"               # the scene on which the bars were first defined
+STILL = ("still", "chair")      # where nothing moves, parts that model time are worth nothing
 PRIOR = "factorised costs at least 10 % more rate"
 # against: a variant whose steps take much less time, with the core minutes of training of the
-# largest files of both in the words; by default the variant's base. first: what makes the bar as it
-# was first defined, of the runs and the scene.
+# largest files of both beside what is measured; by default the variant's base. first: what makes
+# the bar as it was first defined, of the runs and the scene.
 Bar = namedtuple("Bar", "variant what limit first against", defaults=(None, None))
 BARS = (
     Bar("concat", "bank against concat", "bank better", first_bars.concat),
@@ -53,38 +55,50 @@ RECIPE_BARS = (
 )
 
 
-def add_bars(report, scene):
+def add_bars(report):
     for one in BARS:
-        variant_bar(report, scene, one)
+        variant_bar(report, one)
     for one in RECIPE_BARS:
-        recipe_bar(report, scene, *one)
+        recipe_bar(report, *one)
 
 
-def variant_bar(report, scene, bar):
-    runs, variant, base = report.runs, bar.variant, bar.against or base_of(bar.variant)
-    what = f"{scene}: {bar.what}"
-    if bar.against:
-        what += " (" + " against ".join(minutes(runs.first(scene, one))
-                                        for one in (bar.against, variant)) + " core minutes)"
-    how = sweep(f"'{scene}-{variant}-*' '{scene}-{base}-*'")
+def scenes_of(runs, variant):
+    """Scenes of the table on which a variant, or a change of the paper's recipe, says something
+    about a part of the method."""
+    return [scene for scene in runs.scenes if runs.of(scene, variant) and scene not in STILL]
+
+
+def has_rows(runs, scene, variant, base):
+    """Whether the variant and its base can be compared there: all of their runs are there, except
+    those that only a comparison over seeds asks for."""
+    own = [run for run in runs.of(scene, variant) if not run.in_group("seeded")]
+    return (bool(runs.present(scene, variant) and runs.present(scene, base))
+            and all(run.has() for run in own) and runs.is_complete(scene, base))
+
+
+def variant_bar(report, bar):
+    runs, base = report.runs, bar.against or base_of(bar.variant)
+    scenes = scenes_of(runs, bar.variant) or [FIRST]
+    there = [scene for scene in scenes if has_rows(runs, scene, bar.variant, base)]
+    patterns = " ".join(f"'{scene}-{one}-*'" for scene in scenes for one in (bar.variant, base))
+    add_bar(report, bar.what, bar.limit, [judged_on(report, scene, bar, base) for scene in there],
+            [scene for scene in scenes if scene not in there], sweep(patterns),
+            bar.first and bar.first(runs, FIRST))
+
+
+def judged_on(report, scene, bar, base):
+    runs, variant = report.runs, bar.variant
     change = Change(runs, scene, variant, base)
-    if not change.runs or not runs.is_complete(scene, variant) or not runs.is_complete(scene, base):
-        report.bars.add(1, what, bar.limit, "", None, how)
-        return
-    within, seeded = within_seeds(runs, scene, change), Seeded(runs, scene, variant)
-    by_seeds = within and not is_prior(variant)
+    seeded = Seeded(runs, scene, variant)
+    by_seeds = within_seeds(runs, scene, change) and not is_prior(variant)
     ok = report.family.is_worse(seeded) if by_seeds else is_met(variant, change)
-    report.bars.add(1, what, bar.limit, measured_text(report, scene, variant, change, seeded), ok,
-                    how, bar.first and bar.first(runs, scene),
-                    alone_text(report, seeded.is_worse_alone(), ok) if by_seeds else "")
-
-
-def signs(runs, scene, other):
-    """(is it worse on one scene, on the other) of each variant of the bars that both scenes have,
-    where both can be said."""
-    pairs = [tuple(Change(runs, one, variant).worse for one in (scene, other))
-             for variant in dict.fromkeys(bar.variant for bar in BARS)]
-    return [pair for pair in pairs if None not in pair]
+    measured = measured_text(runs, scene, variant, change, seeded)
+    if bar.against:
+        measured += "; " + " against ".join(
+            minutes(runs.first(scene, one)) for one in (bar.against, variant)) + " core minutes"
+    return Judged(scene, own_options(runs, runs.first(scene, variant)), measured, ok,
+                  alone_text(report, seeded.is_worse_alone(), ok) if by_seeds else "",
+                  len(seeded.changes or [0]))
 
 
 def is_prior(variant):
@@ -92,16 +106,15 @@ def is_prior(variant):
     return variant.startswith("factorised")
 
 
-def measured_text(report, scene, variant, change, seeded):
-    runs = report.runs
-    text = (f"`{own_options(runs, runs.first(scene, variant))}`: {rate_text(change)}, "
-            f"PSNR at equal bytes {signed(change.psnr, 2, ' dB')}; nearest {change.near_words()}"
+def measured_text(runs, scene, variant, change, seeded):
+    text = (f"{rate_text(change)}, PSNR at equal bytes {signed(change.psnr, 2, ' dB')}; nearest "
+            f"{change.near_words()}"
             f"{mark(runs.of(scene, variant) + runs.of(scene, change.base))}"
             f"{'; within seeds' if within_seeds(runs, scene, change) else ''}")
     if seeded.changes:
         text += (f"; at {len(seeded.changes)} seeds {seeded.by_seed()}, mean "
                  f"{seeded.mean_text()} dB{seeded.mark()}")
-    return text + rests_on(report, scene, len(seeded.changes or [0]))
+    return text
 
 
 def alone_text(report, alone, ok):
@@ -132,19 +145,22 @@ def is_met(variant, change):
     return "?" if change.worse is None else change.worse
 
 
-def recipe_bar(report, scene, changed, what, limit, least):
-    runs = report.runs
-    run = seeded_run(runs, scene, "recipe_" + changed, 1)
-    if not run.in_group("recipe"):
-        return
-    seeded, measured, ok, more = Seeded(runs, scene, "recipe_" + changed), "", None, ""
-    if seeded.changes:
-        measured = (f"`{own_options(runs, run)}`: PSNR at equal bytes, "
-                    f"{len(seeded.changes)} seeds: {seeded.by_seed()}, "
-                    f"mean {seeded.mean_text()} dB{seeded.mark()}"
-                    + rests_on(report, scene, len(seeded.changes)))
-        alone, ok = (-seeded.mean >= least if worse is True else worse
-                     for worse in (seeded.is_worse_alone(), report.family.is_worse(seeded)))
-        more = alone_text(report, alone, ok)
-    report.bars.add(1, f"{scene}, the paper's recipe alone: {what}", limit, measured, ok,
-                    sweep(f"recipe '{scene}-recipe-*'"), more=more)
+def recipe_bar(report, changed, what, limit, least):
+    runs, variant = report.runs, "recipe_" + changed
+    scenes = [scene for scene in scenes_of(runs, variant)
+              if seeded_run(runs, scene, variant, 1).in_group("recipe")]
+    compared = [Seeded(runs, scene, variant) for scene in scenes]
+    if scenes:
+        add_bar(report, f"the paper's recipe alone: {what}", limit,
+                [recipe_judged(report, seeded, least) for seeded in compared if seeded.changes],
+                [seeded.scene for seeded in compared if not seeded.changes],
+                sweep("recipe " + " ".join(f"'{scene}-recipe-*'" for scene in scenes)))
+
+
+def recipe_judged(report, seeded, least):
+    alone, ok = (-seeded.mean >= least if worse is True else worse
+                 for worse in (seeded.is_worse_alone(), report.family.is_worse(seeded)))
+    return Judged(seeded.scene, own_options(report.runs, seeded.pairs[0][0]),
+                  f"PSNR at equal bytes, {len(seeded.changes)} seeds: {seeded.by_seed()}, "
+                  f"mean {seeded.mean_text()} dB{seeded.mark()}",
+                  ok, alone_text(report, alone, ok), len(seeded.changes))
