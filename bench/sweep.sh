@@ -43,8 +43,9 @@ keep_pictures() {
     [ -z "$judge" ] || down=1
     sheet=
     case +$keep+ in *+sheet+*) sheet="--sheet $out.sheet.png" ;; esac
-    run "$programs/ted4eval" "$out.ted4" "${judge:-$folder}" --anyway --downscale "${down:-1}" \
-        --json $sheet -f -q -j "$threads" >"$out.eval.json" || return 1
+    held=$(echo " $options" | grep -o -E -- ' --hold-out [^ ]+' | tr -d '\n')
+    run "$programs/ted4eval" "$out.ted4" "${judge:-$folder}" $held --anyway \
+        --downscale "${down:-1}" --json $sheet -f -q -j "$threads" >"$out.eval.json" || return 1
     [ -z "$sheet" ] || keep_picture "$out.sheet.png" sheets "$tag" || return 1
     spans=
     set -- "$out.ted4"

@@ -39,10 +39,10 @@ def command_section(report):
     page.heading("Commands")
     page.prose("""`make sweep` runs what is missing, `bench/sweep.sh PATTERN...` parts of it, and
         `make report` writes these pages. A run by hand is its command with `-o FILE.ted4`, then
-        `ted4eval FILE.ted4 SCENE --downscale N`, `ted4info FILE.ted4 --budget`, `bench/spans
-        FILE.ted4`, `bench/rate_check FILE.ted4`. Scenes `own:NAME` are made by `ted4scene NAME -o
-        FOLDER`. † marks rows that older sources made, and numbers that depend on one.
-        [sweep.csv](sweep.csv) has all columns.""")
+        `ted4eval FILE.ted4 SCENE --downscale N` (with its `--hold-out`), `ted4info FILE.ted4
+        --budget`, `bench/spans FILE.ted4`, `bench/rate_check FILE.ted4`. Scenes `own:NAME` are made
+        by `ted4scene NAME -o FOLDER`. † marks rows that older sources made, and numbers that depend
+        on one. [sweep.csv](sweep.csv) has all columns.""")
     if runs.strangers:
         page.prose(f"It holds {runs.strangers} rows that sweep.txt does not want; they are not "
                    "shown.")

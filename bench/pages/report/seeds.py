@@ -50,9 +50,11 @@ def section(report):
 
 
 def chart(report, scenes):
-    """A panel for each scene: the seeds on top of the curve of the whole method, so that their
-    spread is seen beside what λ does."""
-    if any(run.has() for _, by_seed in scenes for run in by_seed[1:2]):
+    """A panel for each scene with rows of other seeds: the seeds on top of the curve of the whole
+    method, so that their spread is seen beside what λ does."""
+    scenes = [(scene, by_seed) for scene, by_seed in scenes
+              if any(run.has() for run in by_seed[1:])]
+    if scenes:
         height, places = panels(len(scenes), 330)
         with report.charts.open("seeds", 900, height + 8,
                                 "Seeds beside the curve of the whole method") as svg:
