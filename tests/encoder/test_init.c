@@ -292,6 +292,114 @@ static void test_networks(void **state)
     ted4_trainer_finish(&other);
 }
 
+/* Mean and standard deviation of n numbers. */
+static void moments(const float *x, size_t n, double *mean, double *spread)
+{
+    double sum = 0, square = 0;
+
+    for (size_t i = 0; i < n; i++) {
+        sum += (double)x[i];
+        square += (double)x[i] * (double)x[i];
+    }
+    *mean = sum / (double)n;
+    *spread = sqrt(square / (double)n - *mean * *mean);
+}
+
+/* The bank begins as N(0, 0.1): within 5 standard deviations of both estimates. */
+static void test_bank(void **state)
+{
+    ted4_trainer t;
+    double mean, spread;
+
+    (void)state;
+    cloud_make(&cloud, 200);
+    cloud.options.bank_dim = 64;
+    cloud_begin(&cloud, &t);
+
+    const double n = (double)t.layout.shape.n_bank;
+
+    assert_true(n == 100 * 64);
+    moments(t.net.value + t.layout.bank, t.layout.shape.n_bank, &mean, &spread);
+    assert_true(fabs(mean) < 5 * 0.1 / sqrt(n));
+    assert_true(fabs(spread - 0.1) < 5 * 0.1 / sqrt(2 * n));
+    ted4_trainer_finish(&t);
+}
+
+/* Temporal features distinguish places, without any chance: each is a wave of amplitude 1/2 over
+ * space. */
+static void test_phi(void **state)
+{
+    static float x[CLOUD_POINTS];
+    ted4_trainer t, other;
+
+    (void)state;
+    cloud_make(&cloud, 5);
+    cloud_begin(&cloud, &t);
+    cloud.options.seed = 1;
+    cloud_begin(&cloud, &other);
+    for (int c = 0; c < t.layout.head.phi_dim; c++) {
+        double mean, spread;
+
+        for (size_t i = 0; i < t.anchors.n; i++) {
+            const int channel = t.layout.first[TED4_PHI] + c;
+
+            x[i] = *ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, i, channel);
+            assert_true(fabsf(x[i]) <= 0.5f);
+            assert_true(x[i] == *ted4_anchor_value(&other.anchors, TED4_ROW_VALUE, i, channel));
+        }
+        moments(x, t.anchors.n, &mean, &spread);
+        assert_true(spread > 0.1);
+    }
+    ted4_trainer_finish(&t);
+    ted4_trainer_finish(&other);
+}
+
+/* The biases of the hyperprior's last layer. */
+static const float *prior_biases(const ted4_trainer *t)
+{
+    const ted4_net_shape *s = &t->layout.shape.hyper;
+    size_t at = t->layout.nete + s->first;
+
+    for (int i = 0; i < s->n_layers; i++)
+        at += ((size_t)s->dim[i] + 1) * s->dim[i + 1];
+    return t->net.value + at - s->dim[s->n_layers];
+}
+
+/* The prior begins with the mean and the spread of each component, in steps: half of the anchors
+ * are above the mean by the spread, half below. The logarithm of the spread is held to [-1, 9]; the
+ * steps begin at those of the header. */
+static void test_prior(void **state)
+{
+    static const double spreads[] = { 0.01, 4, 1e5 }; /* in steps */
+    static const double logs[] = { -1, 2, 9 };
+    ted4_trainer t;
+
+    (void)state;
+    cloud_make(&cloud, 5);
+    cloud_begin(&cloud, &t);
+    assert_int_equal(t.anchors.n % 2, 0);
+    for (int y = 0; y < TED4_TYPES; y++)
+        for (unsigned c = 0; c < t.layout.shape.dim[y]; c++)
+            for (size_t i = 0; i < t.anchors.n; i++)
+                *ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, i, t.layout.first[y] + (int)c) =
+                    t.layout.head.step[y] *
+                    (float)(3.0 * c - y + (i % 2 ? 1 : -1) * spreads[c % 3]);
+    ted4_init_prior(t.net.value, &t.layout, &t.anchors, 3);
+
+    const float *bias = prior_biases(&t);
+
+    for (int y = 0; y < TED4_TYPES; y++)
+        for (unsigned c = 0; c < t.layout.shape.dim[y]; c++) {
+            const unsigned at = t.layout.shape.first_output[y] + c;
+
+            assert_true(fabs((double)bias[at] - (3.0 * c - y)) < 1e-3 + 1e-6 * spreads[c % 3]);
+            assert_true(fabs((double)bias[at + t.layout.shape.dim[y]] - logs[c % 3]) < 1e-3);
+        }
+    for (unsigned k = 0; k < t.layout.shape.n_types; k++)
+        assert_true(bias[t.layout.shape.first_step_output + k] == 0.0f);
+    ted4_trainer_finish(&t);
+}
+
 /* Evaluates a network for inputs that are all zero: y, in double precision. */
 static void answer(const float *w, const ted4_net_shape *s, double *y)
 {
@@ -338,11 +446,18 @@ static void test_awake(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_normalise_make), cmocka_unit_test(test_normalise_view),
-        cmocka_unit_test(test_lattice),        cmocka_unit_test(test_voxels),
-        cmocka_unit_test(test_finest),         cmocka_unit_test(test_bound),
-        cmocka_unit_test(test_few_points),     cmocka_unit_test(test_networks),
+        cmocka_unit_test(test_normalise_make),
+        cmocka_unit_test(test_normalise_view),
+        cmocka_unit_test(test_lattice),
+        cmocka_unit_test(test_voxels),
+        cmocka_unit_test(test_finest),
+        cmocka_unit_test(test_bound),
+        cmocka_unit_test(test_few_points),
+        cmocka_unit_test(test_networks),
         cmocka_unit_test(test_awake),
+        cmocka_unit_test(test_bank),
+        cmocka_unit_test(test_phi),
+        cmocka_unit_test(test_prior),
     };
 
     return cmocka_run_group_tests_name("init", tests, NULL, NULL);
