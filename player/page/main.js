@@ -24,7 +24,9 @@ function explain(name, error) {
 }
 
 const wasm = embedded.wasm ?? new URL("ted4.wasm", document.baseURI).href;
-const player = new Player(at("picture"), startWorker(), wasm,
+// Drawing and sorting take a core of their own, but not all the time.
+const workers = Array.from({ length: Math.min(navigator.hardwareConcurrency, 2) }, startWorker);
+const player = new Player(at("picture"), workers, wasm,
   (error) => showMessage(explain(player.file.name, error)));
 
 function showPanel(isShown) {

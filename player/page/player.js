@@ -1,10 +1,10 @@
-// player.js - a file on the screen: decodes and evaluates in a worker, and keeps the picture at the
+// player.js - a file on the screen: decodes and evaluates in workers, and keeps the picture at the
 // time and the camera that are wanted now. It knows nothing of the page around its canvas.
 // SPDX-License-Identifier: BSD-2-Clause
-import { Ted4Client } from "../src/client.js";
 import { centreOf, fitted } from "./camera.js";
 import { bytesByType, camerasOf, chunksOf, metaOf } from "./chunks.js";
 import { Clock } from "./clock.js";
+import { Evaluators } from "./evaluators.js";
 import { Navigation } from "./navigation.js";
 import { cameraOnPath, placeOnPath } from "./path.js";
 import { depthAhead, startCamera } from "./start.js";
@@ -21,25 +21,23 @@ export class Player {
   statistics = { evaluate: 0, firstPicture: 0, evaluated: 0, drawn: 0 };
   #canvas;
   #view = null;
-  #client;
-  #loaded; // the decoder
+  #evaluators;
   #started = null; // the view
-  #scene = null;
   #shown = null; // what the Gaussians on the screen were evaluated for
-  #pending = null; // the evaluation under way
+  #pending = new Map(); // what evaluations under way are for, by their numbers, in order
+  #asked = 0; // the number of the last evaluation
   #pose = null; // the camera that the view was given
   #followed = null; // while the path is followed: { camera, time } of it
   #last = 0;
   #failed;
 
-  // worker: runs src/worker.js; wasm: the module's bytes, or its address; failed(error) hears of
-  // evaluations that fail.
-  constructor(canvas, worker, wasm, failed) {
+  // workers: one or more that run src/worker.js; wasm: the module's bytes, or its address;
+  // failed(error) hears of evaluations that fail.
+  constructor(canvas, workers, wasm, failed) {
     this.#canvas = canvas;
     this.#failed = failed;
     this.navigation = new Navigation(canvas);
-    this.#client = new Ted4Client(worker);
-    this.#loaded = this.#client.load(wasm);
+    this.#evaluators = new Evaluators(workers, wasm);
     // Scrubbing does not wait for the next frame of the display.
     this.clock.sought = () => {
       this.#followPath();
@@ -55,17 +53,16 @@ export class Player {
   // Shows a file from its start. since: when it was asked for. Rejects with Ted4Error; then what
   // was there before stays.
   async open(bytes, name, since = performance.now()) {
-    await this.#loaded;
-    const opening = this.#client.open(bytes);
+    const opening = this.#evaluators.open(bytes);
     // Starting to draw takes this thread as long as decoding takes the worker.
     this.#started ??= this.#startView();
-    const [scene] = await Promise.all([opening, this.#started]);
+    const [{ scene, use }] = await Promise.all([opening, this.#started]);
     const chunks = chunksOf(bytes), cameras = camerasOf(chunks);
     const up = cameras.up ?? UP;
     const isSeen = cameras.cameras.length + cameras.path.length > 0;
     const start = isSeen ? null : startCamera(await scene.gaussians(0, 1), up);
-    this.#scene?.close();
-    this.#scene = scene;
+    use();
+    this.#pending.clear();
     this.#shown = this.#followed = null;
     this.statistics.firstPicture = 0;
     this.file = {
@@ -114,10 +111,8 @@ export class Player {
   }
 
   // The bytes of the file by element. Slow: the file is decoded again.
-  async bytesByElement() {
-    const scene = await this.#client.open(this.file.bytes, { budget: true });
-    scene.close();
-    return scene.bytesByElement;
+  bytesByElement() {
+    return this.#evaluators.bytesByElement();
   }
 
   setBackground(rgb) {
@@ -133,8 +128,10 @@ export class Player {
     this.#evaluate();
     if (this.file === null) return;
     this.#followCamera();
-    if (this.statistics.firstPicture === 0 && this.isSettled)
+    if (this.statistics.firstPicture === 0 && this.isSettled) {
       this.statistics.firstPicture = now - this.file.since;
+      this.#evaluators.share();
+    }
   }
 
   #followCamera() {
@@ -156,20 +153,28 @@ export class Player {
     return { num, den, centre, key: [num, den, ...centre].join() };
   }
 
-  // One evaluation at a time; the next one is for what is wanted then.
+  // As many evaluations at a time as there are workers; the next one is for what is wanted then.
+  // What comes after something newer is dropped.
   #evaluate() {
-    if (this.file === null || this.#pending !== null) return;
-    const wanted = this.#wanted(), scene = this.#scene;
-    if (this.#shown === wanted.key) return;
-    this.#pending = scene.gaussians(wanted.num, wanted.den, wanted.centre).then((g) => {
-      if (scene === this.#scene) this.#show(g, wanted.key);
+    if (this.file === null || !this.#evaluators.isFree) return;
+    const { num, den, centre, key } = this.#wanted(), number = ++this.#asked;
+    if (this.#shown === key || [...this.#pending.values()].at(-1) === key) return;
+    this.#pending.set(number, key);
+    this.#evaluators.gaussians(num, den, centre).then((g) => {
+      if (this.#isNext(number)) this.#show(g, key);
     }).catch((error) => {
-      this.#shown = wanted.key; // and is not tried again
+      if (!this.#isNext(number)) return;
+      this.#shown = key; // and is not tried again
       this.#failed(error);
-    }).finally(() => {
-      this.#pending = null;
-      this.#evaluate();
-    });
+    }).finally(() => this.#evaluate());
+  }
+
+  // Whether an evaluation that has ended is to be shown: not when a later one, or another file,
+  // came before it.
+  #isNext(number) {
+    if (!this.#pending.has(number)) return false;
+    for (const n of [...this.#pending.keys()]) if (n <= number) this.#pending.delete(n);
+    return true;
   }
 
   // The first Gaussians of a file that lists cameras tell where the pivot is.
@@ -184,7 +189,12 @@ export class Player {
 
   // The Gaussians of a time as seen from a place (ClientScene.gaussians). The screen stays.
   gaussians(num, den, centre) {
-    return this.#scene.gaussians(num, den, centre);
+    return this.#evaluators.gaussians(num, den, centre);
+  }
+
+  // How many times can be evaluated at once: 1, and more some time after the first picture.
+  get evaluators() {
+    return this.#evaluators.count;
   }
 
   // Milliseconds of the last sort.
@@ -194,7 +204,7 @@ export class Player {
 
   // Whether the wanted time and camera are on the screen.
   get isSettled() {
-    return this.file !== null && this.#pending === null && this.#shown === this.#wanted().key &&
+    return this.file !== null && this.#pending.size === 0 && this.#shown === this.#wanted().key &&
       this.#pose?.camera === this.navigation.camera && this.#view.isSettled;
   }
 }

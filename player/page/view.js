@@ -22,6 +22,9 @@ export class View {
   #projection = new Mat4();
   #frames = 0; // still to be drawn
   #isSorted = true;
+  // Since the last frame: whether the Gaussians were marked as changed, and whether a sort ended.
+  #isMarked = false;
+  #hasOrder = false;
   sorting = 0; // milliseconds of the last sort
 
   static async create(canvas) {
@@ -52,10 +55,27 @@ export class View {
     });
     this.#app.scene.on("gsplat:sorted", (milliseconds) => {
       this.sorting = milliseconds;
+      this.#hasOrder = true;
       this.#frames = Math.max(this.#frames, FRAMES_AFTER_SORT);
     });
-    this.#app.on("postrender", () => { this.#frames--; });
+    this.#app.on("postrender", () => this.#endFrame());
     this.#app.start();
+  }
+
+  // A frame that takes in the first order of a change forgets that Gaussians were marked, even if it
+  // has not drawn what came in the meantime (rebuildWorkBuffer of PlayCanvas 2.23).
+  #endFrame() {
+    const isLost = this.#isMarked && this.#hasOrder;
+    this.#isMarked = this.#hasOrder = false;
+    this.#frames--;
+    if (isLost && this.#entity !== null) this.#mark();
+  }
+
+  // All Gaussians are taken from the container again.
+  #mark() {
+    this.#entity.gsplat.workBufferUpdate = WORKBUFFER_UPDATE_ONCE;
+    this.#isMarked = true;
+    this.#change();
   }
 
   // changed(now) is called before every frame of the display, drawn() after each that was drawn.
@@ -88,9 +108,8 @@ export class View {
     if (g.n === 0) return;
     if (this.#container === null) this.#create(g.n);
     updateContainer(this.#container, g);
-    this.#entity.gsplat.workBufferUpdate = WORKBUFFER_UPDATE_ONCE;
     this.#isSorted = false;
-    this.#change();
+    this.#mark();
   }
 
   // camera: of annex I, for the whole canvas; near: the depth at which Gaussians begin to show.

@@ -72,6 +72,25 @@ test("pictures at three times agree with those of ted4dec --render", async (t) =
   }
 });
 
+test("of times that follow each other closely the last one stays on the screen", async () => {
+  await showBare();
+  await page.evaluate("ted4Player.clock.seek(8); 0");
+  await page.until("ted4Player.isSettled");
+  const wanted = await page.screenshot();
+  for (let milliseconds = 0; milliseconds < 80; milliseconds += 5) {
+    await page.evaluate(`(async () => {
+      const { clock } = ted4Player;
+      for (const frame of [0, 4, 8]) {
+        clock.seek(frame);
+        await new Promise((resolve) => { setTimeout(resolve, ${milliseconds}); });
+      }
+    })()`);
+    await page.until("ted4Player.isSettled");
+    const shot = await page.screenshot();
+    assert.ok(shot === wanted || await psnr(page, shot, wanted) >= 60, `${milliseconds} ms`);
+  }
+});
+
 test("space plays and pauses, and pictures follow", async () => {
   await page.evaluate("ted4Player.clock.seek(0); 0");
   await page.until("ted4Player.isSettled");
@@ -83,6 +102,17 @@ test("space plays and pauses, and pictures follow", async () => {
   await page.until("ted4Player.isSettled");
   assert.equal(await page.evaluate(POSITION), stopped);
   assert.ok(await page.evaluate("ted4Player.statistics.drawn") > drawn);
+});
+
+test("several workers evaluate, and give the same Gaussians", async () => {
+  await page.until("ted4Player.evaluators === Math.min(navigator.hardwareConcurrency, 2)");
+  const differing = await page.evaluate(`(async () => {
+    const ask = () => ted4Player.gaussians(3, 8, [0.1, -2, 1]);
+    const [a, b] = await Promise.all([ask(), ask()]);
+    const arrays = (g) => [...g.mean, ...g.scale, ...g.rotation, g.opacity, ...g.colour];
+    return arrays(a).filter((array, k) => array.some((v, i) => v !== arrays(b)[k][i])).length;
+  })()`);
+  assert.equal(differing, 0);
 });
 
 test("keys step and jump", async () => {

@@ -33,20 +33,24 @@ const SCRUB = `(async () => {
   return { evaluated: summary(evaluated), shown: summary(shown) };
 })()`;
 
-// New times and new cameras, one after the other, as the page gets them from its worker.
-const EVALUATE = `(async () => {
+// New times and new cameras, as many at once as the page's workers take. atOnce: 0: all of them.
+const EVALUATE = `(async (atOnce) => {
   const inWorker = [], inAll = [];
   const start = performance.now();
-  for (let i = 0; i < ${TIMES}; i++) {
-    const asked = performance.now();
-    const g = await ted4Player.gaussians(i * 137 % 1000, 1000, [0.001 * i, 0.1, 0.2]);
-    inWorker.push(g.milliseconds);
-    inAll.push(performance.now() - asked);
-  }
+  let next = 0;
+  const one = async () => {
+    while (next < ${TIMES}) {
+      const asked = performance.now(), i = next++;
+      const g = await ted4Player.gaussians(i * 137 % 1000, 1000, [0.001 * i, 0.1, 0.2]);
+      inWorker.push(g.milliseconds);
+      inAll.push(performance.now() - asked);
+    }
+  };
+  await Promise.all(Array.from({ length: atOnce || ted4Player.evaluators }, one));
   const perSecond = 1000 * ${TIMES} / (performance.now() - start);
   const summary = ${SUMMARY};
   return { perSecond, inWorker: summary(inWorker), inAll: summary(inAll) };
-})()`;
+})`;
 
 async function opened(browser, url) {
   const page = await browser.page(WIDTH, HEIGHT);
@@ -65,12 +69,15 @@ for (let i = 0; i < OPENINGS; i++) {
   openings.push(await opened(browser, url));
 }
 const { page, anchors, gaussians } = openings.at(-1);
+await page.until("ted4Player.evaluators === Math.min(navigator.hardwareConcurrency, 2)");
 const values = (key) => openings.map((o) => o[key]).sort((a, b) => a - b);
 const median = (key) => values(key)[OPENINGS >> 1];
 console.log(JSON.stringify({
   anchors, gaussians, decode: median("decode"), sort: median("sort"),
   firstPicture: { least: values("firstPicture")[0], median: median("firstPicture") },
-  evaluate: await page.evaluate(EVALUATE), scrub: await page.evaluate(SCRUB),
+  evaluators: await page.evaluate("ted4Player.evaluators"),
+  evaluateOne: await page.evaluate(`${EVALUATE}(1)`),
+  evaluate: await page.evaluate(`${EVALUATE}(0)`), scrub: await page.evaluate(SCRUB),
 }, (key, v) => (typeof v === "number" ? Math.round(10 * v) / 10 : v), 2));
 await browser.close();
 server.close();
