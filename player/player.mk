@@ -85,8 +85,10 @@ $T/occluder.ted4: | $B/ted4scene $B/ted4enc
 	$B/ted4scene occluder -o $T/scene -f
 	$B/ted4enc $T/scene -o $@ --preset draft --iterations 800,400 --seed 1 \
 	    --cameras -f -q
-player-speed: player
+player-speed: player $B/ted4dec
 	TED4_PLAYER=$(abspath $W) node player/test/speed.mjs $(FILE)
+	TED4_WASM=$(abspath $W/ted4.wasm) TED4_DEC=$(abspath $B/ted4dec) \
+	    node player/test/decode_speed.mjs $(FILE)
 deps-test-player: deps-player
 	@$(call INSTALL_DEBIAN,chromium)
 .PHONY: test-player player-speed deps-test-player

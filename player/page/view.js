@@ -62,8 +62,8 @@ export class View {
     this.#app.start();
   }
 
-  // A frame that takes in the first order of a change forgets that Gaussians were marked, even if it
-  // has not drawn what came in the meantime (rebuildWorkBuffer of PlayCanvas 2.23).
+  // A frame that takes in the first order of a change forgets that Gaussians were marked, even if
+  // it has not drawn what came in the meantime (rebuildWorkBuffer of PlayCanvas 2.23).
   #endFrame() {
     const isLost = this.#isMarked && this.#hasOrder;
     this.#isMarked = this.#hasOrder = false;
