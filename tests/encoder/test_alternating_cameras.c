@@ -43,21 +43,36 @@ static ted4_train_options options(void)
     return o;
 }
 
-static int reach_of(uint32_t cameras, uint32_t gap)
+static int reach_now(void)
 {
     const ted4_train_options o = options();
     ted4_trainer t;
     int reach;
 
-    alternate(cameras, gap);
     ball_begin(&t, &o, &balls, NULL);
     reach = ted4_alternating_reach(&t);
     ted4_trainer_finish(&t);
     return reach;
 }
 
+static int reach_of(uint32_t cameras, uint32_t gap)
+{
+    alternate(cameras, gap);
+    return reach_now();
+}
+
+/* Four cameras alternate in the first frames; then one of them takes all pictures. */
+static int reach_of_few(uint32_t frames)
+{
+    alternate(4, 1);
+    for (size_t i = 0; i < balls.n_pictures; i++)
+        if (balls.pictures[i].frame >= frames)
+            balls.pictures[i].is_test = balls.pictures[i].camera_id != 0;
+    return reach_now();
+}
+
 /* Four cameras in turn all occur within five frames, or within nine if every second frame has no
- * picture; with fewer than four cameras no reach suffices. */
+ * picture; with fewer than four cameras, or in few frames, no reach suffices. */
 static void test_reach(void **state)
 {
     const ted4_train_options o = options();
@@ -73,6 +88,8 @@ static void test_reach(void **state)
     assert_int_equal(reach_of(3, 1), -1);
     assert_int_equal(reach_of(2, 1), -1);
     assert_int_equal(reach_of(1, 1), -1);
+    assert_int_equal(reach_of_few(8), -1);
+    assert_int_equal(reach_of_few(BALL_FRAMES), 2);
 }
 
 static void test_apart(void **state)

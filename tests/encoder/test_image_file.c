@@ -488,6 +488,27 @@ static void test_cache_threads(void **state)
     hammer_cache(10 * ITEM_BYTES);
 }
 
+/* Means of blocks, rounded to the nearest: of 2 x 2 pixels of these values in red, green, blue.
+ * What is left at the right and at the bottom is cut off. */
+static void test_downscale(void **state)
+{
+    static const uint8_t want[2][3] = { { 1, 0, 255 }, { 2, 128, 7 } };
+    uint8_t in[3][5][3] = { { { 0 } } }, out[2][3];
+
+    (void)state;
+    in[0][0][0] = in[1][1][0] = 1; /* 0.5 */
+    in[0][1][1] = 1;               /* 0.25 */
+    for (int i = 0; i < 4; i++)
+        in[i / 2][i % 2][2] = 255;
+    in[0][2][0] = in[0][3][0] = in[1][2][0] = 2; /* 1.5 */
+    in[0][2][1] = in[1][3][1] = 255;             /* 127.5 */
+    for (int i = 0; i < 4; i++)
+        in[i / 2][2 + i % 2][2] = (uint8_t)(i == 0 ? 8 : 7); /* 7.25 */
+    in[2][0][0] = in[0][4][0] = 200;
+    ted4_downscale(in[0][0], 5, 3, 2, out[0]);
+    assert_memory_equal(out, want, sizeof want);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -497,6 +518,7 @@ int main(void)
         cmocka_unit_test(test_undistort),
         cmocka_unit_test(test_undistort_border),
         cmocka_unit_test(test_undistort_fold),
+        cmocka_unit_test(test_downscale),
         cmocka_unit_test(test_cache),
         cmocka_unit_test(test_cache_ahead),
         cmocka_unit_test(test_cache_not_ahead),

@@ -9,6 +9,8 @@
 #include "ball_missing.h"
 #include "train/densify/mv_seed.h"
 #include "train/densify/plane_sweep.h"
+#include "train/math/voxel_set.h"
+#include "train/state/anchor_appearance.h"
 #include "train/step/events.h"
 
 enum { SPEED = 2, STEPS = 120 }; /* the blue ball moves 0.5 per frame; its radius is 0.3 */
@@ -112,6 +114,144 @@ static void test_mv_seed(void **state)
     ted4_trainer_finish(&t);
 }
 
+/* ---- what a new anchor is made of ---- */
+
+enum { MOST_ANCHORS = 320, FEATURES = 8, PHI = 4 };
+
+/* The anchors before seeding. */
+typedef struct {
+    size_t n;
+    float feature[MOST_ANCHORS][FEATURES], phi[MOST_ANCHORS][PHI], point[MOST_ANCHORS][3],
+        opacity[MOST_ANCHORS], rgb[3 * MOST_ANCHORS];
+} parents;
+
+static void read_values(const ted4_trainer *t, size_t i, int type, int n, float *to)
+{
+    for (int c = 0; c < n; c++)
+        to[c] = *ted4_anchor_value(&t->anchors, TED4_ROW_VALUE, i, t->layout.first[type] + c);
+}
+
+static void read_point(const ted4_trainer *t, size_t i, float *to)
+{
+    for (int j = 0; j < 3; j++)
+        to[j] = *ted4_anchor_value(&t->anchors, TED4_ROW_POSITION, i, j);
+}
+
+static void read_parents(ted4_trainer *t, parents *p)
+{
+    p->n = t->anchors.n;
+    assert_true(p->n <= MOST_ANCHORS);
+    assert_int_equal(t->layout.head.feature_dim, FEATURES);
+    assert_int_equal(t->layout.head.phi_dim, PHI);
+    assert_int_equal(ted4_anchor_appearance(t, p->opacity, p->rgb), 0);
+    for (size_t i = 0; i < p->n; i++) {
+        read_values(t, i, TED4_FEATURE, FEATURES, p->feature[i]);
+        read_values(t, i, TED4_PHI, PHI, p->phi[i]);
+        read_point(t, i, p->point[i]);
+    }
+}
+
+/* The nearest parent, or the one of the most similar colour among those that are opaque. */
+static size_t parent_of(const parents *p, const ted4_place *place, int by_colour)
+{
+    double least = INFINITY;
+    size_t best = 0;
+
+    for (size_t i = 0; i < p->n; i++) {
+        double off = by_colour && p->opacity[i] < 0.5f ? 10 : 0;
+
+        for (int k = 0; k < 3; k++) {
+            const float d = by_colour ? p->rgb[3 * i + (size_t)k] - (float)place->colour[k] / 255
+                                      : p->point[i][k] - place->point[k];
+
+            off += (double)(d * d);
+        }
+        if (off < least - 1e-9) {
+            least = off;
+            best = i;
+        }
+    }
+    return best;
+}
+
+/* The place at which anchor i was planted; NULL: it is an older one. */
+static const ted4_place *place_of(const ted4_trainer *t, size_t i, const ted4_places *list)
+{
+    float p[3];
+
+    read_point(t, i, p);
+    for (size_t k = 0; k < list->n; k++)
+        if (memcmp(p, list->item[k].point, sizeof p) == 0)
+            return &list->item[k];
+    return NULL;
+}
+
+/* Whether the frame lies within the span of anchor i, which fades within a frame on either side. */
+static int lives_at(const ted4_trainer *t, size_t i, uint32_t frame)
+{
+    float tau[4];
+
+    read_values(t, i, TED4_TAU, 4, tau);
+    return tau[0] * (FRAMES - 1) <= (float)frame && (float)frame <= tau[2] * (FRAMES - 1);
+}
+
+/* Two anchors in one voxel are not both planted if each lives at the other's frame. */
+static void check_apart(const ted4_trainer *t, const ted4_places *list)
+{
+    for (size_t i = 0; i < t->anchors.n; i++)
+        for (size_t k = 0; k < i; k++) {
+            const ted4_place *a = place_of(t, i, list), *b = place_of(t, k, list);
+
+            if (a == NULL || b == NULL || !lives_at(t, i, b->frame) || !lives_at(t, k, a->frame))
+                continue;
+
+            const double voxel = exp2(ceil(log2((double)a->size)));
+
+            assert_true(voxel != exp2(ceil(log2((double)b->size))) ||
+                        ted4_voxel_key(a->point, voxel) != ted4_voxel_key(b->point, voxel));
+        }
+}
+
+/* A new anchor has the features of the anchor that looks most like it, and moves as its nearest
+ * neighbour does. */
+static void test_parents(void **state)
+{
+    const ted4_train_options o = options(0.3);
+    static parents p;
+    ted4_places list = { 0 };
+    ted4_trainer t;
+    size_t n = 0, apart = 0;
+
+    (void)state;
+    ball_begin(&t, &o, &balls, NULL);
+    ball_train(&t, STEPS);
+    read_parents(&t, &p);
+    for (uint32_t f = 0; f < FRAMES; f++)
+        assert_int_equal(ted4_mv_seed_search(&t, f, 0, &list), 0);
+    assert_int_equal(ted4_mv_seed(&t), 0);
+    for (size_t i = 0; i < t.anchors.n; i++) {
+        const ted4_place *place = place_of(&t, i, &list);
+        float feature[FEATURES], phi[PHI];
+
+        if (place == NULL)
+            continue;
+
+        const size_t alike = parent_of(&p, place, 1), near = parent_of(&p, place, 0);
+
+        read_values(&t, i, TED4_FEATURE, FEATURES, feature);
+        read_values(&t, i, TED4_PHI, PHI, phi);
+        assert_memory_equal(feature, p.feature[alike], sizeof feature);
+        assert_memory_equal(phi, p.phi[near], sizeof phi);
+        apart += alike != near;
+        n++;
+    }
+    assert_int_equal(t.anchors.n, p.n + n);
+    assert_true(apart > 5);
+    check_apart(&t, &list);
+    free(list.item);
+    ted4_trainer_finish(&t);
+}
+
 static void test_impossible(void **state)
 {
     ted4_train_options o = options(0.3);
@@ -136,9 +276,8 @@ static void test_impossible(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_search),
-        cmocka_unit_test(test_long),
-        cmocka_unit_test(test_mv_seed),
+        cmocka_unit_test(test_search),     cmocka_unit_test(test_long),
+        cmocka_unit_test(test_mv_seed),    cmocka_unit_test(test_parents),
         cmocka_unit_test(test_impossible),
     };
 

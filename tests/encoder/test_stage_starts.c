@@ -1,5 +1,6 @@
 /* test_stage_starts.c - what begins with a stage: Adam starts anew in stage 2, for anchors and for
- * networks, and the integer stage begins at its step. Built by hand, without training.
+ * networks, parts of the model that hardly any anchor uses are dropped, and the search and the
+ * integer stage begin at their steps. Built by hand, without training.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <stdlib.h>
@@ -7,6 +8,7 @@
 
 #include "cloud_case.h"
 #include "test.h"
+#include "train/search/model_search.h"
 #include "train/state/visible_blocks.h"
 #include "train/step/apply_gradients.h"
 #include "train/step/events.h"
@@ -138,11 +140,86 @@ static void test_integer_step(void **state)
     check_integer_step(1, STAGE1);
 }
 
+/* The model search comes after 15 % of stage 2, if there is any. */
+static void test_search_step(void **state)
+{
+    ted4_trainer t;
+
+    (void)state;
+    begin(&t);
+    assert_true(ted4_model_search_due_step(&t) == UINT64_MAX);
+    t.opt.capacity = 1;
+    assert_int_equal(ted4_model_search_due_step(&t), STAGE1 + 37);
+    t.opt.stage2 = 0;
+    assert_true(ted4_model_search_due_step(&t) == UINT64_MAX);
+    ted4_trainer_finish(&t);
+}
+
+enum { COPIES = 10, MANY = COPIES * CLOUD_POINTS };
+
+/* Makes 2,160 anchors of 216: copies lie beside each other. All of them are still and always there.
+ */
+static void multiply_anchors(ted4_trainer *t)
+{
+    static const float always[4] = { 0, 5, 1, 5 };
+    const size_t n = t->anchors.n;
+
+    assert_int_equal(n, CLOUD_POINTS);
+    assert_int_equal(ted4_anchors_resize(&t->anchors, MANY), 0);
+    for (size_t i = 0; i < MANY; i++) {
+        for (int c = 0; c < t->layout.n_channels; c++)
+            *ted4_anchor_value(&t->anchors, TED4_ROW_VALUE, i, c) =
+                *ted4_anchor_value(&t->anchors, TED4_ROW_VALUE, i % n, c);
+        for (int j = 0; j < 3; j++)
+            *ted4_anchor_value(&t->anchors, TED4_ROW_POSITION, i, j) =
+                *ted4_anchor_value(&t->anchors, TED4_ROW_POSITION, i % n, j) +
+                0.004f * (float)(j == 0 ? i / n : 0);
+        for (int c = 0; c < 4; c++)
+            *ted4_anchor_value(&t->anchors, TED4_ROW_VALUE, i, t->layout.first[TED4_TAU] + c) =
+                always[c];
+        *ted4_anchor_value(&t->anchors, TED4_ROW_VALUE, i, t->layout.temporal_logit) = -10.0f;
+    }
+}
+
+/* Of 2,160 anchors, four are 0.19 % and five 0.23 %: what at most 0.2 % of all anchors do is not
+ * worth a part of the model. moving, fading: numbers of anchors that move, or that are absent at
+ * first. */
+static void check_parts(size_t moving, size_t fading)
+{
+    static const float late[4] = { 0.5f, -3, 1, 5 };
+    ted4_trainer t;
+
+    begin(&t);
+    t.opt.prune_opacity = 0;
+    multiply_anchors(&t);
+    for (size_t i = 0; i < moving; i++)
+        *ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, 7 * i, t.layout.temporal_logit) = 1.0f;
+    for (size_t i = 0; i < fading; i++)
+        for (int c = 0; c < 4; c++)
+            *ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, 7 * i, t.layout.first[TED4_TAU] + c) =
+                late[c];
+    assert_int_equal(ted4_stage2_begin(&t), 0);
+    assert_int_equal(t.anchors.n, MANY);
+    assert_int_equal(t.layout.head.motion, moving > 4 ? TED4_MOTION_BANK : TED4_MOTION_NONE);
+    assert_int_equal(t.layout.head.activation, fading > 4);
+    ted4_trainer_finish(&t);
+}
+
+static void test_parts(void **state)
+{
+    (void)state;
+    check_parts(4, 5);
+    check_parts(5, 4);
+    check_parts(0, 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_adam_restarts),
         cmocka_unit_test(test_integer_step),
+        cmocka_unit_test(test_search_step),
+        cmocka_unit_test(test_parts),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

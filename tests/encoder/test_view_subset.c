@@ -65,7 +65,7 @@ static void test_drawn(void **state)
     ted4_dataset d;
     ted4_trainer t = { .data = &d };
     uint32_t a[16], b[16];
-    int same = 0, odd = 0;
+    int same = 0, odd = 0, late = 0;
 
     (void)state;
     make(&d, picture, 80, 5);
@@ -74,10 +74,13 @@ static void test_drawn(void **state)
     for (int i = 0; i < 16; i++) {
         same += a[i] == b[i];
         odd += picture[a[i]].frame % 2;
+        late += picture[a[i]].frame >= 40;
     }
     assert_true(same < 4);
     assert_true(odd > 2);
     assert_true(odd < 14);
+    assert_true(late > 2);
+    assert_true(late < 14);
 }
 
 int main(void)
