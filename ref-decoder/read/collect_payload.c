@@ -14,7 +14,8 @@ ted4_error ted4_collect_error(ted4_collector *c)
     const ted4_error e = c->d.file.base.error;
 
     if (e.code != TED4_OK) {
-        ted4_find_error(c->f, e);
+        if (e.code != TED4_E_CON_CHUNK_ORDER || !c->disordered)
+            ted4_find_error(c->f, e);
         c->d.file.base.error.code = TED4_OK;
         c->wrong = 1;
     }

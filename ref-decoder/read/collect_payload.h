@@ -21,7 +21,8 @@ typedef struct {
     unsigned n_tile_chunks;
 } ted4_collector;
 
-/* Clears the error of the decoder, reports it unless it is TED4_OK, and returns it. */
+/* Clears the error of the decoder and returns it. Reports it unless it is TED4_OK, or about the
+ * order of chunks that have been reported as out of order. */
 ted4_error ted4_collect_error(ted4_collector *c);
 
 /* Each reports the errors of one payload of the copy. ted4_collect_head must be called first; the
