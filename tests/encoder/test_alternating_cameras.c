@@ -111,12 +111,15 @@ static void test_found(void **state)
 {
     const ted4_train_options o = options();
     ted4_trainer t;
+    ted4_places list = { 0 };
     size_t near;
 
     (void)state;
     alternate(4, 1);
     ball_begin(&t, &o, &balls, NULL);
     ball_train(&t, STEPS);
+    for (uint32_t f = 0; f < FRAMES; f++)
+        assert_int_equal(ted4_mv_seed_search(&t, f, 2, &list), 0);
 
     const size_t before = t.anchors.n;
 
@@ -130,6 +133,8 @@ static void test_found(void **state)
     assert_true(t.anchors.n >= before + 20);
     assert_true(n >= t.anchors.n - before);
     assert_true(2 * near > n);
+    ball_check_apart(&t, &list);
+    free(list.item);
     ted4_trainer_finish(&t);
 }
 

@@ -9,7 +9,6 @@
 #include "ball_missing.h"
 #include "train/densify/mv_seed.h"
 #include "train/densify/plane_sweep.h"
-#include "train/math/voxel_set.h"
 #include "train/state/anchor_appearance.h"
 #include "train/step/events.h"
 
@@ -174,44 +173,6 @@ static size_t parent_of(const parents *p, const ted4_place *place, int by_colour
     return best;
 }
 
-/* The place at which anchor i was planted; NULL: it is an older one. */
-static const ted4_place *place_of(const ted4_trainer *t, size_t i, const ted4_places *list)
-{
-    float p[3];
-
-    read_point(t, i, p);
-    for (size_t k = 0; k < list->n; k++)
-        if (memcmp(p, list->item[k].point, sizeof p) == 0)
-            return &list->item[k];
-    return NULL;
-}
-
-/* Whether the frame lies within the span of anchor i, which fades within a frame on either side. */
-static int lives_at(const ted4_trainer *t, size_t i, uint32_t frame)
-{
-    float tau[4];
-
-    read_values(t, i, TED4_TAU, 4, tau);
-    return tau[0] * (FRAMES - 1) <= (float)frame && (float)frame <= tau[2] * (FRAMES - 1);
-}
-
-/* Two anchors in one voxel are not both planted if each lives at the other's frame. */
-static void check_apart(const ted4_trainer *t, const ted4_places *list)
-{
-    for (size_t i = 0; i < t->anchors.n; i++)
-        for (size_t k = 0; k < i; k++) {
-            const ted4_place *a = place_of(t, i, list), *b = place_of(t, k, list);
-
-            if (a == NULL || b == NULL || !lives_at(t, i, b->frame) || !lives_at(t, k, a->frame))
-                continue;
-
-            const double voxel = exp2(ceil(log2((double)a->size)));
-
-            assert_true(voxel != exp2(ceil(log2((double)b->size))) ||
-                        ted4_voxel_key(a->point, voxel) != ted4_voxel_key(b->point, voxel));
-        }
-}
-
 /* A new anchor has the features of the anchor that looks most like it, and moves as its nearest
  * neighbour does. */
 static void test_parents(void **state)
@@ -230,7 +191,7 @@ static void test_parents(void **state)
         assert_int_equal(ted4_mv_seed_search(&t, f, 0, &list), 0);
     assert_int_equal(ted4_mv_seed(&t), 0);
     for (size_t i = 0; i < t.anchors.n; i++) {
-        const ted4_place *place = place_of(&t, i, &list);
+        const ted4_place *place = ball_place_of(&t, i, &list);
         float feature[FEATURES], phi[PHI];
 
         if (place == NULL)
@@ -247,7 +208,7 @@ static void test_parents(void **state)
     }
     assert_int_equal(t.anchors.n, p.n + n);
     assert_true(apart > 5);
-    check_apart(&t, &list);
+    ball_check_apart(&t, &list);
     free(list.item);
     ted4_trainer_finish(&t);
 }

@@ -7,7 +7,9 @@
 
 #include "ball_trainer.h"
 #include "test.h"
+#include "train/densify/plane_sweep.h"
 #include "train/densify/short_lived.h"
+#include "train/math/voxel_set.h"
 
 enum { BLUE = 2 };
 
@@ -68,6 +70,56 @@ static inline size_t ball_count_short_lived(const ted4_trainer *t, int speed, fl
         n++;
     }
     return n;
+}
+
+/* ---- anchors and the places at which they were planted ---- */
+
+/* The place of anchor i; NULL: it is none of the list's. */
+static inline const ted4_place *ball_place_of(const ted4_trainer *t, size_t i,
+                                              const ted4_places *list)
+{
+    float p[3];
+
+    for (int j = 0; j < 3; j++)
+        p[j] = *ted4_anchor_value(&t->anchors, TED4_ROW_POSITION, i, j);
+    for (size_t k = 0; k < list->n; k++)
+        if (memcmp(p, list->item[k].point, sizeof p) == 0)
+            return &list->item[k];
+    return NULL;
+}
+
+/* Whether the frame is one of those in which the votes found anchor i. Its span is wider by a
+ * quarter of the distance to the next known frame on either side, and fades over 0.35 of that. */
+static inline int ball_lives_at(const ted4_trainer *t, size_t i, uint32_t frame)
+{
+    const double frames = t->data->n_frames - 1.0;
+    double tau[4];
+
+    for (int c = 0; c < 4; c++)
+        tau[c] = (double)*ted4_anchor_value(&t->anchors, TED4_ROW_VALUE, i,
+                                            t->layout.first[TED4_TAU] + c);
+    return tau[0] * frames + 0.25 / 0.35 * exp2(tau[1]) * frames <= frame + 1e-3 &&
+           frame - 1e-3 <= tau[2] * frames - 0.25 / 0.35 * exp2(tau[3]) * frames;
+}
+
+/* Asserts that of two anchors in one voxel not both were planted if each lives at the other's
+ * frame. */
+static inline void ball_check_apart(const ted4_trainer *t, const ted4_places *list)
+{
+    for (size_t i = 0; i < t->anchors.n; i++)
+        for (size_t k = 0; k < i; k++) {
+            const ted4_place *a = ball_place_of(t, i, list), *b = ball_place_of(t, k, list);
+
+            if (a == NULL || b == NULL)
+                continue;
+
+            const double voxel = exp2(ceil(log2((double)a->size)));
+
+            if (voxel != exp2(ceil(log2((double)b->size))) ||
+                ted4_voxel_key(a->point, voxel) != ted4_voxel_key(b->point, voxel))
+                continue;
+            assert_false(ball_lives_at(t, i, b->frame) && ball_lives_at(t, k, a->frame));
+        }
 }
 
 #endif
