@@ -21,6 +21,7 @@ static void strip(char *line)
 static void begin(conf_mutant_list *l, const char *path, const char *line)
 {
     conf_mutant *m;
+    int n;
 
     l->m = realloc(l->m, (l->n + 1) * sizeof *l->m);
     if (l->m == NULL)
@@ -28,8 +29,13 @@ static void begin(conf_mutant_list *l, const char *path, const char *line)
     m = &l->m[l->n];
     memset(m, 0, sizeof *m);
     m->place = conf_place_named("");
-    if (sscanf(line, "mutant %63s %199s", m->id, m->file) != 2)
+    n = sscanf(line, "mutant %63s %199s", m->id, m->file);
+    if (n < 1 || (n < 2 && l->n == 0))
         conf_die("%s: bad line: %s", path, line);
+    if (n < 2) {
+        memcpy(m->file, m[-1].file, sizeof m->file);
+        memcpy(m->from, m[-1].from, sizeof m->from);
+    }
     for (size_t i = 0; i < l->n; i++)
         if (strcmp(l->m[i].id, m->id) == 0)
             conf_die("%s: %s is there twice", path, m->id);
@@ -270,17 +276,39 @@ void conf_mutant_results_read(conf_mutant_list *l, const char *suite)
         fclose(f);
 }
 
+static void print_row(const conf_mutant_list *l, const conf_mutant *m, conf_bytes *b)
+{
+    conf_print(b, "%s,%016" PRIx64 ",%s,%s,%s\n", m->id, key_of(l, m), m->verdict, m->vector,
+               m->by);
+}
+
 void conf_mutant_results_add(const conf_mutant_list *l, const conf_mutant *m, const char *suite)
 {
-    char path[CONF_PATH], row[ROW];
+    conf_bytes row = { NULL, 0, 0 };
+    char path[CONF_PATH];
     FILE *f;
 
+    print_row(l, m, &row);
     conf_path(path, "%s/mutants.csv", suite);
     f = fopen(path, "a");
-    snprintf(row, sizeof row, "%s,%016" PRIx64 ",%s,%s,%s\n", m->id, key_of(l, m), m->verdict,
-             m->vector, m->by);
-    if (f == NULL || fputs(row, f) == EOF || fclose(f) != 0)
+    /* One write, since several processes append. */
+    if (f == NULL || fputs((const char *)row.data, f) == EOF || fclose(f) != 0)
         conf_die("%s: cannot be written", path);
+    conf_free(&row);
+}
+
+void conf_mutant_results_keep(const conf_mutant_list *l, const char *suite)
+{
+    conf_bytes rows = { NULL, 0, 0 };
+    char path[CONF_PATH];
+
+    for (size_t i = 0; i < l->n; i++)
+        if (l->m[i].verdict[0] != '\0')
+            print_row(l, &l->m[i], &rows);
+    conf_path(path, "%s/mutants.csv", suite);
+    if (rows.size > 0)
+        conf_write(path, rows.data, rows.size);
+    conf_free(&rows);
 }
 
 size_t conf_mutant_count(const conf_mutant_list *l, const char *verdict)

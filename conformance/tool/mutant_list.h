@@ -1,7 +1,8 @@
 /* mutant_list.h - seeded faults, as mutants.list stores them, and their results, as mutants.csv
  * stores them. A fault is one textual change to one source file:
- *     mutant ID FILE
- *     < the line as it is, without its indentation
+ *     mutant ID FILE       FILE may be left out: that of the mutant before
+ *     < the line as it is, without its indentation; if FILE is left out, this line may be too: that
+ *       of the mutant before
  *     > the line as it becomes
  *     @ where it is judged (mutant_place.h); without this line, by plain kernels in one thread
  *     = why no vector distinguishes it from the original, where that is known
@@ -59,6 +60,9 @@ uint64_t conf_mutant_code_of(const char *files);
 /* Computes the hashes that the keys need, then takes the verdicts of all rows that still hold. */
 void conf_mutant_results_read(conf_mutant_list *l, const char *suite);
 void conf_mutant_results_add(const conf_mutant_list *l, const conf_mutant *m, const char *suite);
+/* Writes mutants.csv anew: the rows of mutants that have a verdict, in the order of the list.
+ * Leaves it alone if there is none. */
+void conf_mutant_results_keep(const conf_mutant_list *l, const char *suite);
 /* Returns the number of mutants with that verdict. */
 size_t conf_mutant_count(const conf_mutant_list *l, const char *verdict);
 

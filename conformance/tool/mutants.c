@@ -351,6 +351,7 @@ int conf_mutants(const conf_mutant_options *o)
                c.list.n - conf_mutant_count(&c.list, ""));
     } else {
         run_due(&c);
+        conf_mutant_results_keep(&c.list, o->suite);
         good = write_report(&c);
     }
     conf_mutant_list_free(&c.list);

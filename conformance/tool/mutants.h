@@ -23,10 +23,10 @@ typedef struct {
     int check;      /* neither run nor write anything */
 } conf_mutant_options;
 
-/* Runs every mutant without a valid result, stores the results in mutants.csv, and writes
- * MUTANTS.md. Returns the exit code, 0 if enough mutants are killed. With check, it only prints the
- * number of valid results and returns 0. Ends the program if the list does not match the sources,
- * or if the unchanged decoder fails. */
+/* Runs every mutant without a valid result, stores the results in mutants.csv, drops those that no
+ * longer hold, and writes MUTANTS.md. Returns the exit code, 0 if enough mutants are killed. With
+ * check, it only prints the number of valid results and returns 0. Ends the program if the list
+ * does not match the sources, or if the unchanged decoder fails. */
 int conf_mutants(const conf_mutant_options *o);
 
 #endif

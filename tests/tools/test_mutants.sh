@@ -58,7 +58,7 @@ fresh() {
 mutant gt ref-decoder/norm/f.c
 < if (x > 0)
 > if (x > 1)
-mutant crash ref-decoder/norm/f.c
+mutant crash
 < y = 2;
 > y = 3;
 mutant lives ref-decoder/read/g.c
@@ -117,6 +117,10 @@ ran; rm "$out/suite/vectors/V-two.json"
 holds killing_vector_goes 1
 mutants >/dev/null 2>&1
 holds stale_ones_run_again 2
+ran; sed -i 's/x > 1/x > 2/' "$out/suite/mutants.list"; mutants >/dev/null 2>&1
+holds rows_again 3
+if [ "$(wc -l <"$out/suite/mutants.csv")" -eq 3 ]; then ok stale_rows_go;
+else fail stale_rows_go "$(cat "$out/suite/mutants.csv")"; fi
 
 # Places: with threads, by the printed decoder of DEFLATE, and by kernels that no machine has beside
 # this one's.
@@ -129,8 +133,7 @@ places() {
     echo 'int i;' >"$out/player/wasm/inflate.c"
     printf 'Text.\n\n```c\n    v = 1;\n```\n' >"$out/spec/annex-l-deflate.md"
     cat >>"$out/suite/mutants.list" <<END
-mutant race ref-decoder/read/g.c
-< w = 1;
+mutant race
 > w = 3;
 @ threads
 mutant annex spec/annex-l-deflate.md
@@ -185,6 +188,8 @@ fresh; sed -i 's/z = 1/z = 2/' "$out/ref-decoder/norm/f.c"
 expect equivalent_is_not_there 3 'same: its line is in ref-decoder/norm/f.c 0 times' mutants --check
 fresh; sed -i '/^=/d' "$out/suite/mutants-equivalent.list"
 expect equivalent_says_why 3 'same: why?' mutants --check
+fresh; sed -i '1s/ ref-decoder.*//' "$out/suite/mutants.list"
+expect file_of_the_first 3 'bad line: mutant gt' mutants --check
 fresh; cat "$out/suite/mutants.list" >"$out/twice"; cat "$out/twice" >>"$out/suite/mutants.list"
 expect id_twice 3 'gt is there twice' mutants --check
 exit $bad
