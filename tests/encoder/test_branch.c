@@ -3,30 +3,13 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 
-#include "ball_trainer.h"
+#define BALL_FRAMES 3
+#include "ball_group.h"
 #include "test.h"
 #include "train/search/branch.h"
 #include "train/step/step.h"
 
-enum { FRAMES = 3, BEGIN = 5 };
-
-static tiny_folder folder;
-static ted4_dataset scene;
-
-static int set_up(void **state)
-{
-    (void)state;
-    ball_load(&folder, &scene, FRAMES, 1);
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    (void)state;
-    ted4_dataset_free(&scene);
-    tiny_free(&folder);
-    return 0;
-}
+enum { BEGIN = 5 };
 
 /* Of seven steps, the last four count; of six, the last three. */
 static void test_second_half(void **state)
@@ -38,8 +21,8 @@ static void test_second_half(void **state)
         ted4_trainer t, twin;
         double loss, sum = 0;
 
-        ball_begin(&t, &o, &scene, NULL);
-        ball_begin(&twin, &o, &scene, NULL);
+        ball_begin(&t, &o, &balls, NULL);
+        ball_begin(&twin, &o, &balls, NULL);
         ball_train(&t, BEGIN);
         ball_train(&twin, BEGIN);
         assert_int_equal(ted4_branch_run(&t, n, &loss), 0);

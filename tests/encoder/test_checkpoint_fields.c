@@ -6,34 +6,22 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "ball_trainer.h"
+#include "ball_group.h"
 #include "test.h"
 #include "tool/search_report.h"
 #include "train/monitor/checkpoint.h"
 #include "train/model/header_from_options.h"
 #include "train/step/stages.h"
 
-enum { FRAMES = 5, TRIALS = 2 };
+enum { TRIALS = 2 };
 
-static tiny_folder folder;
-static ted4_dataset scene;
 static ted4_train_options options;
 
-static int set_up(void **state)
+static int set_up_all(void **state)
 {
-    (void)state;
-    ball_load(&folder, &scene, FRAMES, 1);
     options = ball_options();
     ball_set(&options, "capacity=1");
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    (void)state;
-    ted4_dataset_free(&scene);
-    tiny_free(&folder);
-    return 0;
+    return set_up(state);
 }
 
 /* The next of a sequence of numbers in (0, 1), of which no two are equal. */
@@ -101,7 +89,7 @@ static void fill_parameters(ted4_trainer *t)
 /* A trainer within stage 1, with numbers everywhere. */
 static void begin(ted4_trainer *t)
 {
-    ball_begin(t, &options, &scene, NULL);
+    ball_begin(t, &options, &balls, NULL);
     assert_int_equal(ted4_snapshot_take(t, &t->monitor.good), 0);
     t->monitor.good_at = 11;
     fill_parameters(t);
@@ -233,7 +221,7 @@ static void check_file(ted4_trainer *t)
     snprintf(path, sizeof path, "%s", tiny_path(&folder, "checkpoint"));
     if (ted4_checkpoint_save(t, path) != 0)
         fail_msg("%s", t->message.text);
-    ball_begin(&again, &options, &scene, NULL);
+    ball_begin(&again, &options, &balls, NULL);
     if (ted4_checkpoint_load(&again, path) != 0)
         fail_msg("%s", again.message.text);
     check_same(t, &again, 1);
@@ -248,7 +236,7 @@ static void check_state(ted4_trainer *t)
     ted4_trainer again;
 
     assert_int_equal(ted4_state_take(t, &s), 0);
-    ball_begin(&again, &options, &scene, NULL);
+    ball_begin(&again, &options, &balls, NULL);
     if (ted4_state_restore(&again, &s) != 0)
         fail_msg("%s", again.message.text);
     check_same(t, &again, 0);
@@ -286,7 +274,7 @@ static void put_twice(ted4_trainer *t)
 
 static void put_beyond(ted4_trainer *t)
 {
-    t->order.item[0] = (uint32_t)scene.n_pictures;
+    t->order.item[0] = (uint32_t)balls.n_pictures;
 }
 
 static void end_order(ted4_trainer *t)
@@ -334,7 +322,7 @@ static void test_impossible(void **state)
     };
 
     (void)state;
-    scene.pictures[3].is_test = 1;
+    balls.pictures[3].is_test = 1;
     for (size_t i = 0; i < sizeof spoil / sizeof spoil[0]; i++) {
         ted4_trainer t, again;
         ted4_snapshot s = { 0 };
@@ -342,25 +330,25 @@ static void test_impossible(void **state)
         begin(&t);
         spoil[i](&t);
         assert_int_equal(ted4_state_take(&t, &s), 0);
-        ball_begin(&again, &options, &scene, NULL);
+        ball_begin(&again, &options, &balls, NULL);
         if (ted4_state_restore(&again, &s) == 0)
             fail_msg("impossible state %d was restored", (int)i);
         ted4_trainer_finish(&t);
         ted4_trainer_finish(&again);
         ted4_snapshot_free(&s);
     }
-    scene.pictures[3].is_test = 0;
+    balls.pictures[3].is_test = 0;
 }
 
 /* Takes a state, changes a bit of the scene, and asserts that the state is refused as that of
- * another scene. */
+ * another balls. */
 static void check_other_scene(void *number)
 {
     uint8_t *const byte = number;
     ted4_trainer t;
     ted4_snapshot s = { 0 };
 
-    ball_begin(&t, &options, &scene, NULL);
+    ball_begin(&t, &options, &balls, NULL);
     assert_int_equal(ted4_state_take(&t, &s), 0);
     *byte ^= 1;
     assert_int_equal(ted4_state_restore(&t, &s), -1);
@@ -373,12 +361,12 @@ static void check_other_scene(void *number)
 static void test_other_scene(void **state)
 {
     (void)state;
-    check_other_scene(&scene.content);
-    check_other_scene(&scene.pictures[7].camera.fx);
-    check_other_scene(&scene.pictures[7].camera.t[1]);
-    check_other_scene(&scene.points[40]);
-    check_other_scene(&scene.point_rgb[40]);
-    check_other_scene(&scene.background[2]);
+    check_other_scene(&balls.content);
+    check_other_scene(&balls.pictures[7].camera.fx);
+    check_other_scene(&balls.pictures[7].camera.t[1]);
+    check_other_scene(&balls.points[40]);
+    check_other_scene(&balls.point_rgb[40]);
+    check_other_scene(&balls.background[2]);
 }
 
 int main(void)
@@ -389,5 +377,5 @@ int main(void)
         cmocka_unit_test(test_other_scene),
     };
 
-    return cmocka_run_group_tests(tests, set_up, tear_down);
+    return cmocka_run_group_tests(tests, set_up_all, tear_down);
 }

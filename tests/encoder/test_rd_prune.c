@@ -6,7 +6,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "ball_trainer.h"
+#define BALL_FRAMES 12
+#include "ball_group.h"
 #include "test.h"
 #include "train/model/formulas.h"
 #include "train/monitor/checkpoint.h"
@@ -15,32 +16,20 @@
 #include "train/search/sensitivity.h"
 #include "train/state/visible_blocks.h"
 
-enum { STAGE1 = 900, STAGE2 = 300, INTEGER = STAGE1 + 240, FRAMES = 12, PRICES = 6 };
+enum { STAGE1 = 900, STAGE2 = 300, INTEGER = STAGE1 + 240, PRICES = 6 };
 
 /* Bits of an anchor's position and of its motion flag. */
 #define ANCHOR_BITS 49.0
 
-static tiny_folder folder;
-static ted4_dataset scene;
 static ted4_train_options options;
 
-static int set_up(void **state)
+static int set_up_all(void **state)
 {
-    (void)state;
-    ball_load(&folder, &scene, FRAMES, 1);
     options = ball_options();
     ball_set(&options, "stage1=900");
     ball_set(&options, "stage2=300");
     ball_set(&options, "capacity_share=0.25");
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    (void)state;
-    ted4_dataset_free(&scene);
-    tiny_free(&folder);
-    return 0;
+    return set_up(state);
 }
 
 static int is_kept(const ted4_trainer *t, size_t i, size_t k)
@@ -157,14 +146,14 @@ static void test_rule(void **state)
     size_t fits = 0;
 
     (void)state;
-    ball_begin(&t, &options, &scene, NULL);
+    ball_begin(&t, &options, &balls, NULL);
     ball_train(&t, STAGE1);
     hide_anchors(&t);
     ball_train(&t, INTEGER + 1);
     assert_true(t.phase.integer);
     assert_true(ted4_rd_prune_steps(&t) > 0);
     assert_int_equal(ted4_state_take(&t, &s), 0);
-    ball_begin(&before, &options, &scene, NULL);
+    ball_begin(&before, &options, &balls, NULL);
     assert_int_equal(ted4_state_restore(&before, &s), 0);
 
     worth w = weigh(&before);
@@ -198,5 +187,5 @@ int main(void)
         cmocka_unit_test(test_rule),
     };
 
-    return cmocka_run_group_tests(tests, set_up, tear_down);
+    return cmocka_run_group_tests(tests, set_up_all, tear_down);
 }

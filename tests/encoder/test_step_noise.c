@@ -4,33 +4,22 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "ball_trainer.h"
+#define BALL_FRAMES 3
+#include "ball_group.h"
 #include "test.h"
 #include "train/math/random.h"
 #include "train/monitor/checkpoint.h"
 
-enum { STAGE1 = 60, STEP = STAGE1 + 3, FRAMES = 3, MOST_BLOCKS = 16 };
+enum { STAGE1 = 60, STEP = STAGE1 + 3, MOST_BLOCKS = 16 };
 
-static tiny_folder folder;
-static ted4_dataset scene;
 static ted4_train_options options;
 
-static int set_up(void **state)
+static int set_up_all(void **state)
 {
-    (void)state;
-    ball_load(&folder, &scene, FRAMES, 1);
     options = ball_options();
     ball_set(&options, "stage1=60");
     ball_set(&options, "rate_share=1");
-    return 0;
-}
-
-static int tear_down(void **state)
-{
-    (void)state;
-    ted4_dataset_free(&scene);
-    tiny_free(&folder);
-    return 0;
+    return set_up(state);
 }
 
 /* The step's blocks as they were before it: t holds the parameters, and step has been done in
@@ -128,10 +117,10 @@ static void test_same_noise(void **state)
     double old, now;
 
     (void)state;
-    ball_begin(&t, &options, &scene, NULL);
+    ball_begin(&t, &options, &balls, NULL);
     ball_train(&t, STEP);
     assert_int_equal(ted4_state_take(&t, &s), 0);
-    ball_begin(&before, &options, &scene, NULL);
+    ball_begin(&before, &options, &balls, NULL);
     assert_int_equal(ted4_state_restore(&before, &s), 0);
     old = sum_of(t.progress.bits);
     ball_train(&t, STEP + 1);
@@ -153,5 +142,5 @@ int main(void)
         cmocka_unit_test(test_same_noise),
     };
 
-    return cmocka_run_group_tests(tests, set_up, tear_down);
+    return cmocka_run_group_tests(tests, set_up_all, tear_down);
 }

@@ -1,5 +1,5 @@
 #!/bin/sh
-# test_stability.sh - bench/stability.sh (and with it bench/runs.sh) with stub programs, and its
+# test_stability.sh - bench/stability.sh (and with it bench/runs.sh) with stand-in programs, and its
 # page on rows whose results can be computed by hand. Prints lines as a cmocka program does; run by
 # `make test` from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
@@ -25,7 +25,7 @@ scene wall_sfm own:hide+points=sfm
 run sfm whole wall_sfm 1 -
 END
 
-# ---- the runs, with stub programs ----
+# ---- the runs, with stand-in programs ----
 
 # ted4enc: seed 8 gives up, seed 9 crashes, on calm seed 8 is killed from outside; other seeds are
 # trained. Each call adds a line to $out/calls.

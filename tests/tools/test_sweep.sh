@@ -1,5 +1,5 @@
 #!/bin/sh
-# test_sweep.sh - bench/sweep.sh with stub programs: a run is judged by the pictures that its
+# test_sweep.sh - bench/sweep.sh with stand-in programs: a run is judged by the pictures that its
 # training held out. Prints lines as a cmocka program does; run by `make test` from the project's
 # root.
 # SPDX-License-Identifier: BSD-2-Clause
@@ -17,10 +17,10 @@ scene other room@tint --downscale 2
 run rd whole room,upper,other 1 -
 END
 mkdir -p "$out/build/bench" "$out/bin" "$out/data/room" "$out/data/tint"
-# stub PROGRAM: it does what stdin says.
-stub() { { echo '#!/bin/sh'; cat; } >"$out/$1"; chmod +x "$out/$1"; }
-stub bin/make </dev/null
-stub build/ted4enc <<END
+# stand_in PROGRAM: it does what stdin says.
+stand_in() { { echo '#!/bin/sh'; cat; } >"$out/$1"; chmod +x "$out/$1"; }
+stand_in bin/make </dev/null
+stand_in build/ted4enc <<END
 while [ \$# -gt 0 ]; do
     case \$1 in -o) file=\$2 ;; --log) log=\$2 ;; --hold-out) held=\$2 ;; --stage1) first=\$2 ;; esac
     shift
@@ -31,15 +31,15 @@ echo x >"\$first"
 echo '{"step":250,"stage":"1","loss":0.5,"psnr":20,"anchors":5,"bytes":0,"ms":4,"seconds":1.25,"cpu_seconds":0.5}' >"\$log"
 echo '{"anchors":5,"gaussians":9,"dynamic":2,"estimated_bits":10,"coded_bits":11,"hash":"abc"}'
 END
-stub build/ted4eval <<END
+stand_in build/ted4eval <<END
 shift
 echo "eval \$*" | sed 's/ [^ ]*\/data\// /' >>"$out/calls"
 echo '{"psnr":30.25,"bytes":123}'
 END
-echo 'echo "{\"decode_ms\":5}"' | stub build/ted4dec
-echo 'echo "{\"budget\":[]}"' | stub build/ted4info
+echo 'echo "{\"decode_ms\":5}"' | stand_in build/ted4dec
+echo 'echo "{\"budget\":[]}"' | stand_in build/ted4info
 for program in build/ted4scene build/bench/rate_check build/bench/spans build/bench/to_jpeg; do
-    echo 'echo "{}"' | stub $program
+    echo 'echo "{}"' | stand_in $program
 done
 PATH=$out/bin:$PATH TED4_BUILD=$out/build TED4_RESULTS=$out TED4_TABLE=$out/table.txt \
     TED4_DATA=$out/data bench/sweep.sh --jobs 1 >"$out/said" 2>&1 &&

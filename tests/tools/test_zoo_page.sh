@@ -1,6 +1,6 @@
 #!/bin/sh
-# test_zoo_page.sh - bench/zoo.sh with stub programs, and the zoo page on rows whose results can be
-# computed by hand. Prints lines as a cmocka program does; run by `make test` from the project's
+# test_zoo_page.sh - bench/zoo.sh with stand-in programs, and the zoo page on rows whose results can
+# be computed by hand. Prints lines as a cmocka program does; run by `make test` from the project's
 # root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
@@ -21,7 +21,7 @@ run long medium odd 1 - --preset medium
 run alone alone kind,odd 1 -
 END
 
-# ---- the runs, with stub programs ----
+# ---- the runs, with stand-in programs ----
 
 mkdir -p "$out/build/bench" "$out/bin"
 cat >"$out/bin/make" <<END
