@@ -203,9 +203,8 @@ static void test_held_times(void **state)
                     assert_int_equal(at.object[i].kind, near.object[i].kind);
             }
         }
-        assert_int_equal(held, s == RAY_HIDE || s == RAY_FLICKER || s == RAY_MOMENT || s == RAY_TOYS
-                                   ? 0
-                                   : (o.n_frames + 3) / 8);
+        assert_int_equal(held,
+                         ted4_ray_plan_of((ted4_ray_scene)s)->hold == 0 ? 0 : (o.n_frames + 3) / 8);
     }
     ted4_ray_options o = plan(RAY_BLINK);
     o.n_frames = 13;

@@ -264,6 +264,10 @@ void ted4_ray_lab_at(ted4_ray_world *w, ted4_ray_scene s, int frame, int n_frame
         ted4_ray_toys(w, t);
         return;
     }
+    if (s == RAY_RELAY) {
+        ted4_ray_relay(w, t, frame);
+        return;
+    }
     if (s >= RAY_THINGS0) {
         ted4_ray_things(w, n_things(s), s == RAY_REST && frame > half ? half : frame);
         return;

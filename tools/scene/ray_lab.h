@@ -22,4 +22,9 @@ void ted4_ray_things(ted4_ray_world *w, int n_moving, int frames);
  * droplets fall. */
 void ted4_ray_toys(ted4_ray_world *w, double t);
 
+/* ray_relay.c: adds a disk with two things that stand still, without furniture; a ball goes round,
+ * a block swings on a rod, and drops fall past the disk. Only the drops depend on the number of
+ * frames. */
+void ted4_ray_relay(ted4_ray_world *w, double t, int frame);
+
 #endif

@@ -50,12 +50,34 @@ int ted4_ray_start(const ted4_ray_options *o, int number)
     return o->ways.starts && o->n_frames > 8 ? late[number % 4] : 0;
 }
 
+/* Returns the place, from 0, of test camera k in a round of all cameras. */
+static int test_place(const ted4_ray_options *o, int k)
+{
+    return (2 * k + 1) * (o->n_train + o->n_test) / (2 * o->n_test);
+}
+
+/* Returns the place, from 0, of a camera in a round of all cameras: the test cameras are spread
+ * over the round, and the training cameras fill the other places in order. */
+static int place_in_round(const ted4_ray_options *o, int number)
+{
+    int place = number;
+
+    if (number >= o->n_train)
+        return test_place(o, number - o->n_train);
+    for (int k = 0; k < o->n_test; k++)
+        place += test_place(o, k) <= place;
+    return place;
+}
+
 int ted4_ray_is_taken(const ted4_ray_options *o, int number, int frame)
 {
     if (number >= o->n_train && o->ways.split == RAY_TRAIN_ONLY)
         return 0;
     if (o->ways.turns)
         return shuffled(number, o->n_train + o->n_test, o->seed + SEED_TIME) == frame;
+    if (ted4_ray_plan_of(o->scene)->rounds && ted4_ray_has_lists(o->layout))
+        return frame % (o->n_train + o->n_test) == place_in_round(o, number) &&
+               (number >= o->n_train || !ted4_ray_is_held(o, frame));
     if (number < o->n_train)
         return !ted4_ray_is_held(o, frame) && frame >= ted4_ray_start(o, number);
     if (o->ways.split == RAY_OTHER_TIMES)

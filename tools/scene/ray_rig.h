@@ -40,7 +40,8 @@ int ted4_ray_has_lists(ted4_ray_layout l);
  * the last time, and no time in layouts without lists. */
 int ted4_ray_is_held(const ted4_ray_options *o, int frame);
 
-/* Return 1 if the picture of that camera and time is listed, or if it is listed but missing. */
+/* Return 1 if the picture of that camera and time is listed, or if it is listed but missing. In
+ * layouts with lists, cameras of a scene with rounds take one picture each in every round. */
 int ted4_ray_is_taken(const ted4_ray_options *o, int number, int frame);
 int ted4_ray_is_missing(const ted4_ray_options *o, int number, int frame);
 

@@ -68,6 +68,10 @@ static const ted4_ray_plan plans[RAY_SCENES] = {
     [RAY_TOYS] = { "toys", "small things on a disk, a ball goes round, droplets fall", SMALL,
                    .n_train = 10, .n_test = 2, .n_frames = 16, .background = RAY_CLEAR, .dome = 1,
                    .scale = 1 },
+    /* With 117 times the training cameras take 84 pictures. */
+    [RAY_RELAY] = { "relay", "a ball, a swinging block and drops, before cameras that take turns",
+                    SMALL, .n_train = 5, .n_test = 2, .n_frames = 117, .rounds = 1,
+                    .background = RAY_WHITE, .scale = 1 },
 };
 
 const ted4_ray_plan *ted4_ray_plan_of(ted4_ray_scene s)

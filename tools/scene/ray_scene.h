@@ -21,7 +21,9 @@ typedef struct {
                    0: one per camera */
     int turned_away; /* the last of several training cameras looks away from the scene */
     ted4_ray_background background; /* surroundings of the things, by default */
-    int dome; /* cameras stand around the things on all sides, unless these are in a room */
+    int rounds; /* 1: cameras take turns, in rounds in which each takes one picture
+                   (ted4_ray_is_taken) */
+    int dome;   /* cameras stand around the things on all sides, unless these are in a room */
     double scale,
         shift[3]; /* coordinates in the files = scale times coordinates in the room + shift */
 } ted4_ray_plan;

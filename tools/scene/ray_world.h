@@ -42,6 +42,7 @@ typedef enum {
     RAY_THINGS8,
     RAY_REST,
     RAY_TOYS,
+    RAY_RELAY,
     RAY_SCENES
 } ted4_ray_scene;
 
