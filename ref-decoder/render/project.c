@@ -80,6 +80,45 @@ static uint32_t make_boxes(const project_job *job, const ted4_projection *p, ted
     return visible;
 }
 
+/* Returns whether each of a register of Gaussians is too faint to be drawn: no alpha of a pixel is
+ * above its opacity. NaN is not faint. */
+static int all_faint(ted4_vf opacity)
+{
+    return ted4_vi_bits(~(opacity < TED4_RASTER_ALPHA_MIN)) == 0;
+}
+
+/* Projects and stores one register of n Gaussians, i and following. */
+static void project_group(const project_job *job, size_t i, size_t n, ted4_chunk *count,
+                          uint64_t *key, ted4_vi *skipped)
+{
+    ted4_tile_box *box = (ted4_tile_box *)job->r->box.data + i;
+    uint32_t *first_instance = (uint32_t *)job->r->first_instance.data + i;
+    const ted4_vf opacity = ted4_vf_load_n(job->s->opacity + i, n);
+    ted4_splat_lanes g;
+    ted4_projection p;
+
+    if (all_faint(opacity)) {
+        memset(box, 0, n * sizeof *box);
+        for (size_t k = 0; k < n; k++)
+            first_instance[k] = count->n_instances;
+        return;
+    }
+    ted4_splat_lanes_load(&g, job->s, i, n);
+    ted4_project_lanes(&p, &g, job->v, &job->guard);
+
+    const ted4_vf level = ted4_vf_log2(opacity);
+    const ted4_vi depth = (ted4_vi)p.t[2];
+    const uint32_t visible = make_boxes(job, &p, level, opacity, n, box, skipped);
+
+    store_splats(job, i, &p, level, visible);
+    for (size_t k = 0; k < n; k++) {
+        first_instance[k] = count->n_instances;
+        count->n_instances += ted4_tile_box_area(box[k]);
+        key[count->n_visible] = (uint64_t)(uint32_t)depth[k] << 32 | (uint32_t)(i + k);
+        count->n_visible += visible >> k & 1;
+    }
+}
+
 /* Runs one job, of TED4_CHUNK Gaussians. The keys of visible ones go to the front of the chunk's
  * part of key[1]. first_instance counts from the beginning of the chunk; bin.c adds the number of
  * instances in the chunks before. */
@@ -88,32 +127,12 @@ static void project_chunk(void *arg, size_t c)
     const project_job *job = arg;
     const size_t begin = c * TED4_CHUNK,
                  end = begin + TED4_CHUNK < job->s->n ? begin + TED4_CHUNK : job->s->n;
-    ted4_tile_box *box = job->r->box.data;
-    uint32_t *first_instance = job->r->first_instance.data;
     uint64_t *key = (uint64_t *)job->r->key[1].data + begin;
     ted4_chunk count = { .nearest = UINT32_MAX };
     ted4_vi skipped = { 0 };
 
-    for (size_t i = begin; i < end; i += TED4_VEC) {
-        const size_t n = end - i < TED4_VEC ? end - i : TED4_VEC;
-        ted4_splat_lanes g;
-        ted4_projection p;
-
-        ted4_splat_lanes_load(&g, job->s, i, n);
-        ted4_project_lanes(&p, &g, job->v, &job->guard);
-
-        const ted4_vf level = ted4_vf_log2(g.opacity);
-        const ted4_vi depth = (ted4_vi)p.t[2];
-        const uint32_t visible = make_boxes(job, &p, level, g.opacity, n, box + i, &skipped);
-
-        store_splats(job, i, &p, level, visible);
-        for (size_t k = 0; k < n; k++) {
-            first_instance[i + k] = count.n_instances;
-            count.n_instances += ted4_tile_box_area(box[i + k]);
-            key[count.n_visible] = (uint64_t)(uint32_t)depth[k] << 32 | (uint32_t)(i + k);
-            count.n_visible += visible >> k & 1;
-        }
-    }
+    for (size_t i = begin; i < end; i += TED4_VEC)
+        project_group(job, i, end - i < TED4_VEC ? end - i : TED4_VEC, &count, key, &skipped);
     for (int k = 0; k < TED4_VEC; k++)
         count.n_skipped -= (uint32_t)skipped[k];
     for (size_t k = 0; k < count.n_visible; k++) {

@@ -326,6 +326,20 @@ static void test_skipped_adds_up(void **state)
     scene_free(&s);
 }
 
+/* An opacity that is not a number is counted also if all around it are too faint. */
+static void test_skipped_among_faint(void **state)
+{
+    static float image[3 * PIXELS];
+    const ted4_view v = straight();
+    scene s = make(64);
+
+    (void)state;
+    for (size_t i = 0; i < s.n; i++)
+        set(&s, i, 16, 16, 3, 0.1f, i == 20 ? NAN : 0.001f);
+    assert_int_equal(draw(&s, &v, image), 1);
+    scene_free(&s);
+}
+
 enum { CROWD = 100000 };
 
 /* Many Gaussians in one tile, all at the same depth if equal is set, so faint that over a thousand
@@ -423,11 +437,17 @@ static void test_crowd(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_sizes),           cmocka_unit_test(test_depths),
-        cmocka_unit_test(test_order),           cmocka_unit_test(test_no_near_plane),
-        cmocka_unit_test(test_edges),           cmocka_unit_test(test_opacities),
-        cmocka_unit_test(test_rotations),       cmocka_unit_test(test_skipped),
-        cmocka_unit_test(test_skipped_adds_up), cmocka_unit_test(test_crowd),
+        cmocka_unit_test(test_sizes),
+        cmocka_unit_test(test_depths),
+        cmocka_unit_test(test_order),
+        cmocka_unit_test(test_no_near_plane),
+        cmocka_unit_test(test_edges),
+        cmocka_unit_test(test_opacities),
+        cmocka_unit_test(test_rotations),
+        cmocka_unit_test(test_skipped),
+        cmocka_unit_test(test_skipped_adds_up),
+        cmocka_unit_test(test_crowd),
+        cmocka_unit_test(test_skipped_among_faint),
     };
 
     return cmocka_run_group_tests_name("raster at extreme values", tests, NULL, NULL);

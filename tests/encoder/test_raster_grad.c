@@ -256,6 +256,21 @@ static void test_awkward(void **state)
     free_problem(&p);
 }
 
+/* Runs of Gaussians that are too faint, longer than a register, which projection skips, between
+ * others. */
+static void test_faint_runs(void **state)
+{
+    const ted4_view v = scene_view(24, 20);
+    problem p = make_problem(scene_random(72, &v, 3, 9), &v, 9);
+
+    (void)state;
+    for (size_t i = 0; i < p.s.n; i++)
+        if (i % 40 >= 8)
+            *scene_param(&p.s, SCENE_OPACITY, i) = i % 3 == 0 ? 0 : 0.99f * TED4_RASTER_ALPHA_MIN;
+    check(&p);
+    free_problem(&p);
+}
+
 /* mean2d is the image-plane gradient in units of half the image size. For a Gaussian on the optical
  * axis, moving the mean by z / fx along the camera's x axis moves the centre by one pixel and, to
  * first order, changes nothing else except the Jacobian, whose effect on a tiny Gaussian is
@@ -338,6 +353,7 @@ int main(void)
         cmocka_unit_test(test_early_stop), cmocka_unit_test(test_clamped_jacobian),
         cmocka_unit_test(test_awkward),    cmocka_unit_test(test_mean2d),
         cmocka_unit_test(test_threads),    cmocka_unit_test(test_nothing),
+        cmocka_unit_test(test_faint_runs),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);
