@@ -8,6 +8,7 @@
 #include "data/flicker.h"
 #include "train/search/candidates.h"
 #include "train/state/anchor_masks.h"
+#include "train/state/dropout.h"
 
 static void put_time(FILE *f, const ted4_trainer *t)
 {
@@ -17,6 +18,15 @@ static void put_time(FILE *f, const ted4_trainer *t)
     if (loss[0] > 0)
         fprintf(f, "capacity.time=%s: loss %.6f with it, %.6f without\n",
                 timed ? "needed" : "not needed", loss[0], loss[1]);
+}
+
+static void put_dropout(FILE *f, const ted4_trainer *t)
+{
+    const double most = ted4_dropout_most(t);
+
+    if (most > 0)
+        fprintf(f, "capacity.dropout=%.3g of the anchors at most; %.3g cameras per time\n", most,
+                t->order.cameras);
 }
 
 static void put_light(FILE *f, const ted4_trainer *t)
@@ -65,6 +75,7 @@ char *ted4_search_report(const ted4_trainer *t)
         return NULL;
     fprintf(f, "capacity=%s; lambda %.7g\n", t->opt.capacity ? "auto" : "fixed", t->opt.lambda);
     put_time(f, t);
+    put_dropout(f, t);
     put_light(f, t);
     put_moving(f, t);
     for (size_t i = 0; i < t->search.n_trials; i++)

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "dropout.h"
 #include "train/model/normalise.h"
 #include "visible_blocks.h"
 
@@ -16,6 +17,8 @@ int ted4_trainer_render(ted4_trainer *t, const ted4_picture *pic, int training, 
     ted4_normalise_view(&t->layout.head, &pic->camera, v, in->camera);
     if (ted4_visible_blocks_fill(t, v) != 0)
         return -1;
+    if (training)
+        ted4_dropout(t);
     in->layout = &t->layout;
     in->net = t->net.value;
     in->n_visible = t->visible_blocks.n;

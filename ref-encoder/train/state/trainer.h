@@ -22,6 +22,7 @@ typedef struct {
     uint32_t *item; /* owned: picture numbers */
     uint32_t n, next;
     uint64_t key, round;
+    double cameras; /* pictures per time, over the times that have any */
 } ted4_order;
 
 /* Measurements of the steps: running means over about 100 steps. */

@@ -13,14 +13,25 @@
 
 static int make_order(ted4_trainer *t)
 {
+    uint8_t *seen = calloc((size_t)t->data->n_frames + 1, 1); /* times that have pictures */
+    uint32_t times = 0;
+
     t->order.item = malloc((t->data->n_pictures + 1) * sizeof *t->order.item);
-    if (t->order.item == NULL)
+    for (uint32_t i = 0; seen != NULL && t->order.item != NULL && i < t->data->n_pictures; i++) {
+        const ted4_picture *pic = &t->data->pictures[i];
+
+        if (pic->is_test)
+            continue;
+        t->order.item[t->order.n++] = i;
+        times += !seen[pic->frame];
+        seen[pic->frame] = 1;
+    }
+    free(seen);
+    if (seen == NULL || t->order.item == NULL)
         return ted4_trainer_fail(t, "no memory for the order of pictures");
-    for (uint32_t i = 0; i < t->data->n_pictures; i++)
-        if (!t->data->pictures[i].is_test)
-            t->order.item[t->order.n++] = i;
     if (t->order.n == 0)
         return ted4_trainer_fail(t, "no training pictures");
+    t->order.cameras = (double)t->order.n / (double)times;
     t->order.key = ted4_mix(t->opt.seed ^ 0x6f72646572u);
     t->order.next = t->order.n;
     return 0;
