@@ -53,6 +53,10 @@ cmp -s "$out/told.ted4" "$out/first.ted4" && ok resumed_file || fail resumed_fil
 encode fixed --why --log "$out/fixed.jsonl" --capacity fixed
 equal fixed_log "$(logged fixed)" 0
 equal fixed_file "$("$TED4_BUILD/ted4info" "$out/fixed.ted4" --why | grep '^capacity')" \
+    "capacity=fixed; lambda 0.002
+capacity.dropout=0.2 of the anchors at most; 5 cameras per time"
+encode whole --why --capacity fixed --set dropout=0
+equal without_dropout "$("$TED4_BUILD/ted4info" "$out/whole.ted4" --why | grep '^capacity')" \
     "capacity=fixed; lambda 0.002"
 "$TED4_BUILD/ted4enc" "$out/scene" -o "$out/x.ted4" --capacity some 2>"$out/err"
 equal refused "$?:$(cat "$out/err")" '3:ted4enc: --capacity: bad value some; expected auto or fixed'
