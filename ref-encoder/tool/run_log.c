@@ -296,6 +296,24 @@ int ted4_run_log_trials(ted4_run_log *l, const ted4_trainer *t, size_t first, ch
     return 0;
 }
 
+int ted4_run_log_poses(ted4_run_log *l, const ted4_trainer *t, char *why, size_t why_size)
+{
+    const int refined = t->poses.decision == TED4_POSES_REFINED;
+    char line[200];
+
+    if (l->file < 0)
+        return 0;
+
+    const int n = snprintf(line, sizeof line,
+                           "{\"step\":%llu,\"event\":\"poses\",\"rollbacks\":%llu,"
+                           "\"moved\":%.4f,\"refined\":%s}\n",
+                           (unsigned long long)t->iteration,
+                           (unsigned long long)t->monitor.state.rollbacks, t->poses.moved,
+                           refined ? "true" : "false");
+
+    return put_line(l, line, (size_t)n, why, why_size);
+}
+
 int ted4_run_log_close(ted4_run_log *l, char *why, size_t why_size)
 {
     const int file = l->file;

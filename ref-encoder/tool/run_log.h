@@ -65,7 +65,7 @@ int ted4_run_log_cut(ted4_run_log *l, const ted4_trainer *t, char *why, size_t w
  *   gradients              usual norm (near the median of about 100 steps) of the gradient of each
  *                          term: anchor values by attribute, masks, centres of Gaussians (the
  *                          positions of anchors are not trained), networks (heads, motion, prior),
- *                          bank, steps (quantisation steps), colour; 0: not trained
+ *                          bank, steps (quantisation steps), colour, pose; 0: not trained
  *   peaks                  largest norm of each term since the previous line, as a multiple of its
  *                          usual norm; 0: not known yet
  *   rollbacks              number of rollbacks so far
@@ -92,6 +92,14 @@ int ted4_run_log_event(ted4_run_log *l, const ted4_trainer *t, char *why, size_t
  * rate Returns the same as ted4_run_log_step. */
 int ted4_run_log_trials(ted4_run_log *l, const ted4_trainer *t, size_t first, char *why,
                         size_t why_size);
+/* Writes one line about the decision on poses of training cameras (train/step/pose_step.h):
+ *   step                   the step at which training continues
+ *   event                  "poses"
+ *   rollbacks              number of rollbacks so far
+ *   moved                  pixels by which refinement has moved what is seen
+ *   refined                true: refinement goes on; false: the given poses are put back
+ * Returns the same as ted4_run_log_step. */
+int ted4_run_log_poses(ted4_run_log *l, const ted4_trainer *t, char *why, size_t why_size);
 /* Closes the file. Returns 0, or -1 with why filled. */
 int ted4_run_log_close(ted4_run_log *l, char *why, size_t why_size);
 

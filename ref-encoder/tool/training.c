@@ -188,6 +188,19 @@ static int tell_rollback(ted4_training *t)
     return ted4_run_log_event(&t->log, t->trainer, t->why, sizeof t->why);
 }
 
+/* Reports whether the poses of training cameras are refined from now on. */
+static int tell_poses(ted4_training *t)
+{
+    const ted4_poses *p = &t->trainer->poses;
+
+    ted4_teller_say(t->teller,
+                    p->decision == TED4_POSES_REFINED
+                        ? "poses: refinement moves what is seen by %.2f pixels, and goes on"
+                        : "poses: refinement moves what is seen by %.2f pixels only; as given",
+                    p->moved);
+    return ted4_run_log_poses(&t->log, t->trainer, t->why, sizeof t->why);
+}
+
 /* Handles a failed step. If the cause is an anomaly, it becomes the last line of the log. */
 static int fail_step(ted4_training *t)
 {
@@ -198,18 +211,22 @@ static int fail_step(ted4_training *t)
     return fail(t);
 }
 
-/* Makes one step, and logs restarts, rollbacks and trials that happened in it. */
+/* Makes one step, and logs restarts, rollbacks, decisions and trials that happened in it. */
 static int step(ted4_training *t)
 {
     ted4_trainer *tr = t->trainer;
     const uint64_t before = tr->iteration, rollbacks = tr->monitor.state.rollbacks;
     const size_t trials = tr->search.n_trials;
+    const ted4_poses_decision poses = tr->poses.decision;
 
     if (ted4_trainer_step(tr) != 0)
         return fail_step(t);
     /* One call may advance by many steps, since those of a probe count. It may also restart at an
      * earlier step (after a probe) or go back (a rollback). */
     if (tr->iteration <= before && start_over(t) != 0)
+        return -1;
+    if (tr->poses.decision != poses && tr->poses.decision != TED4_POSES_ON_TRIAL &&
+        tell_poses(t) != 0)
         return -1;
     if (tr->search.n_trials > trials &&
         ted4_run_log_trials(&t->log, tr, trials, t->why, sizeof t->why) != 0)

@@ -84,6 +84,14 @@ static void fill_parameters(ted4_trainer *t)
         fill_floats(t->colour.m[i], TED4_COLOUR_VALUES);
         fill_floats(t->colour.v[i], TED4_COLOUR_VALUES);
     }
+    for (size_t i = 0; i < t->poses.n; i++) {
+        t->poses.steps[i] = 5 + i;
+        fill_floats(t->poses.value[i], TED4_POSE_VALUES);
+        fill_floats(t->poses.m[i], TED4_POSE_VALUES);
+        fill_floats(t->poses.v[i], TED4_POSE_VALUES);
+    }
+    t->poses.decision = TED4_POSES_REFINED;
+    t->poses.moved = fresh_number();
 }
 
 /* A trainer within stage 1, with numbers everywhere. */
@@ -161,6 +169,20 @@ static void check_parameters(const ted4_trainer *a, const ted4_trainer *b)
     }
 }
 
+static void check_poses(const ted4_poses *a, const ted4_poses *b)
+{
+    assert_true(a->n > 0);
+    assert_int_equal(a->n, b->n);
+    assert_int_equal(a->decision, b->decision);
+    assert_true(a->moved == b->moved);
+    for (size_t i = 0; i < a->n; i++) {
+        assert_int_equal(a->steps[i], b->steps[i]);
+        check_floats(a->value[i], b->value[i], TED4_POSE_VALUES);
+        check_floats(a->m[i], b->m[i], TED4_POSE_VALUES);
+        check_floats(a->v[i], b->v[i], TED4_POSE_VALUES);
+    }
+}
+
 static void check_search(const ted4_trainer *a, const ted4_trainer *b)
 {
     assert_int_equal(a->search.probed, b->search.probed);
@@ -193,6 +215,7 @@ static void check_same(const ted4_trainer *a, const ted4_trainer *b, int good)
     assert_int_equal(a->order.round, b->order.round);
     check_search(a, b);
     check_parameters(a, b);
+    check_poses(&a->poses, &b->poses);
     if (!good)
         return;
     assert_int_equal(a->monitor.good_at, b->monitor.good_at);
@@ -312,14 +335,19 @@ static void have_no_voxel(ted4_trainer *t)
     t->voxel = 0;
 }
 
+static void decide_nothing(ted4_trainer *t)
+{
+    t->poses.decision = TED4_POSES_GIVEN + 1;
+}
+
 /* The hash of such a file is right, so that only the check of its contents can refuse it. Picture
  * 3 is held out. */
 static void test_impossible(void **state)
 {
-    static void (*const spoil[])(ted4_trainer *) = {
-        put_held_out,     put_twice,      put_beyond,   end_order,         leave_cube_above,
-        leave_cube_below, train_too_long, have_no_rate, go_back_too_often, have_no_voxel
-    };
+    static void (*const spoil[])(
+        ted4_trainer *) = { put_held_out,      put_twice,        put_beyond,     end_order,
+                            leave_cube_above,  leave_cube_below, train_too_long, have_no_rate,
+                            go_back_too_often, have_no_voxel,    decide_nothing };
 
     (void)state;
     balls.pictures[3].is_test = 1;

@@ -1,5 +1,6 @@
 /* test_generate_grad.c - train/splat/decode_bwd.c against central differences of the
- * double-precision reference: every channel of anchors, every value of the networks and the bank.
+ * double-precision reference: every channel of anchors, every value of the networks and the bank,
+ * and the centre of the camera.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <stdlib.h>
@@ -162,6 +163,33 @@ static void check_net(size_t step)
         assert_true(d_net[i] == 1.0f);
 }
 
+/* Checks the gradient of the camera's centre, by way of viewing directions. */
+static void check_camera(const ted4_generator *g)
+{
+    for (int c = 0; c < 3; c++) {
+        const double got = (double)ted4_generate_camera_gradient(g)[c];
+        const double old = scene.query.camera[c];
+        double want = 0, size = 0;
+
+        for (int visible = 0; visible < CASE_BLOCKS; visible++)
+            for (int lane = 0; lane < TED4_LANES; lane++) {
+                double rise;
+
+                if ((scene.lanes[visible] >> lane & 1) == 0)
+                    continue;
+                scene.query.camera[c] = old + STEP;
+                rise = loss(visible, lane, channels[visible][lane]);
+                scene.query.camera[c] = old - STEP;
+                rise = (rise - loss(visible, lane, channels[visible][lane])) / (2.0 * STEP);
+                want += rise;
+                size += fabs(rise);
+            }
+        scene.query.camera[c] = old;
+        if (!(fabs(got - want) <= TOLERANCE * size))
+            fail_msg("centre, axis %d: %g, not %g (%g)", c, got, want, size);
+    }
+}
+
 static void check_header(const ted4_header *h, uint32_t num, uint32_t den, size_t step)
 {
     ted4_generator *g = make(h, num, den);
@@ -171,6 +199,7 @@ static void check_header(const ted4_header *h, uint32_t num, uint32_t den, size_
         for (int lane = 0; lane < TED4_LANES; lane++)
             check_anchor(i, lane);
     check_net(step);
+    check_camera(g);
     ted4_generator_free(g);
 }
 
@@ -317,6 +346,7 @@ static void test_threads(void **state)
 {
     static const ted4_parallel runs[] = { { odd_backwards, NULL }, { odd_threads, NULL } };
     static float first_attr[CASE_BLOCKS][CASE_CHANNELS * TED4_LANES];
+    float camera[3];
 
     (void)state;
     for (int motion = 0; motion < 4; motion++) {
@@ -326,10 +356,12 @@ static void test_threads(void **state)
         run(g, NULL);
         memcpy(first_attr, d_attr, sizeof d_attr);
         memcpy(first_net, d_net, sizeof d_net);
+        memcpy(camera, ted4_generate_camera_gradient(g), sizeof camera);
         for (int i = 0; i < 2; i++) {
             run(g, &runs[i]);
             assert_memory_equal(first_attr, d_attr, sizeof d_attr);
             assert_memory_equal(first_net, d_net, sizeof d_net);
+            assert_memory_equal(camera, ted4_generate_camera_gradient(g), sizeof camera);
         }
         ted4_generator_free(g);
     }

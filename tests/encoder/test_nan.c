@@ -59,8 +59,21 @@ static void test_nan(void **state)
     tiny_free(&f);
 }
 
-/* A NaN in a camera's map is detected before a step changes networks or anchors. */
-static void test_colour(void **state)
+static void spoil_colour(ted4_trainer *t)
+{
+    assert_true(t->colour.n_corrected > 0);
+    for (uint32_t c = 0; c < t->colour.n_cameras; c++)
+        t->colour.value[c][0] = NAN;
+}
+
+static void spoil_poses(ted4_trainer *t)
+{
+    assert_true(t->poses.n > 0);
+    t->poses.value[t->poses.n - 1][TED4_POSE_VALUES - 1] = NAN;
+}
+
+/* A NaN in what belongs to cameras is detected before a step changes networks or anchors. */
+static void check_spoiled(void (*spoil)(ted4_trainer *), const char *what)
 {
     const ted4_train_options o = ball_options();
     tiny_folder f;
@@ -68,19 +81,16 @@ static void test_colour(void **state)
     ted4_trainer t;
     float *net;
 
-    (void)state;
     ball_load(&f, &d, 5, 1);
     ball_begin(&t, &o, &d, NULL);
     ball_train(&t, 130);
-    assert_true(t.colour.n_corrected > 0);
-    for (uint32_t c = 0; c < t.colour.n_cameras; c++)
-        t.colour.value[c][0] = NAN;
+    spoil(&t);
     net = malloc(t.layout.n_net * sizeof *net);
     assert_non_null(net);
     memcpy(net, t.net.value, t.layout.n_net * sizeof *net);
     ted4_monitor_forget(&t);
     assert_int_equal(ted4_trainer_step(&t), -1);
-    assert_non_null(strstr(t.message.text, "map of colour"));
+    assert_non_null(strstr(t.message.text, what));
     assert_non_null(
         strstr(t.message.text, "not finite at step 130; there is no good state before it"));
     assert_int_equal(t.iteration, 130);
@@ -92,9 +102,22 @@ static void test_colour(void **state)
     tiny_free(&f);
 }
 
+static void test_colour(void **state)
+{
+    (void)state;
+    check_spoiled(spoil_colour, "map of colour");
+}
+
+static void test_poses(void **state)
+{
+    (void)state;
+    check_spoiled(spoil_poses, "motion of pose");
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(test_nan), cmocka_unit_test(test_colour) };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_nan), cmocka_unit_test(test_colour),
+                                        cmocka_unit_test(test_poses) };
 
     return cmocka_run_group_tests_name("nan", tests, NULL, NULL);
 }

@@ -52,6 +52,8 @@ static void make_halves(cloud_case *c, ted4_picture *pictures)
         }
     c->data.pictures = pictures;
     c->data.n_pictures = n;
+    c->data.n_cameras = 2;
+    c->options.colour = 0; /* there are no files */
 }
 
 static void check_span(const ted4_trainer *t, size_t i, float from, float to)

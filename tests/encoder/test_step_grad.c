@@ -1,14 +1,17 @@
 /* test_step_grad.c - the gradient of a whole training step, composed as in train/step/step.c: the
- * distortion as a function of the rasteriser, the generator and, in stage 2, the quantiser, plus
- * the rate. Its products with random directions, in each part of the model and in all at once, are
- * compared with central differences of double-precision references. Quantisation residuals are held
- * fixed; masks are straight-through.
+ * distortion as a function of the camera's pose, the rasteriser, the generator and, in stage 2, the
+ * quantiser, plus the rate. Its products with random directions, in each part of the model and in
+ * all at once, are compared with central differences of double-precision references. Quantisation
+ * residuals are held fixed; masks are straight-through.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "test.h"
 #include "generate_ref.h"
 #include "loss_ref.h"
+#include "pose_ref.h"
 #include "raster_ref.h"
 #include "rate_ref.h"
+#include "train/model/normalise.h"
+#include "train/pose/pose_grad.h"
 #include "train/raster/raster_bwd.h"
 #include "train/splat/generator.h"
 #include "render/raster_plain.h"
@@ -28,24 +31,29 @@ enum {
 
 #define SSIM_WEIGHT 0.3f
 /* Step of the difference, and the largest relative disagreement of its two halves: a jump appears
- * as jump / STEP. */
+ * as jump / STEP, and half of it in the difference. */
 #define STEP        1e-7
-#define JUMP_SHARE  1e-3
+#define JUMP_SHARE  (2 * TOLERANCE)
 /* Tolerance between float gradients and double differences, relative to the size of the terms of
  * the product. */
 #define TOLERANCE   1e-4
 
 /* All parameters are in one array: the networks, followed by blocks of channels in the order of
- * train/model/model.h. */
+ * train/model/model.h, followed by the motion of the camera's pose. */
 typedef struct {
     ted4_layout layout;
-    ted4_view view;
+    ted4_camera given;
+    ted4_poses poses; /* one; borrows the next four */
+    uint32_t pose;
+    uint8_t seen;
+    ted4_pose_motion motion, d_motion;
+    ted4_view view; /* of the moved camera */
     float camera[3];
     uint32_t num, den;
     int activation, stage2;
     float bit_weight;
     uint64_t key;
-    size_t n_theta;
+    size_t n_model, n_theta; /* without and with the pose */
     uint32_t lanes[N_BLOCKS], block[N_BLOCKS];
     uint8_t truth[3 * PIXELS];
     _Alignas(64) float position[N_BLOCKS][3 * TED4_LANES];
@@ -89,6 +97,9 @@ static ted4_header make_head(void)
     h.head_width = 9;
     h.frames = 9;
     h.step[TED4_FEATURE] = 0.3f;
+    h.exponent = 1;
+    h.origin[0] = 0.5f;
+    h.background[2] = 200;
     return h;
 }
 
@@ -114,25 +125,29 @@ static void make_anchor(int visible, int j)
             ted4_half_to_float(ted4_float_to_half((float)ref_uniform()));
 }
 
+/* The camera is far enough from where it was given for exp to matter. The origin of normalised
+ * space is not that of the world, and a unit of it is 2 units of the world. */
 static void make_view(void)
 {
     const double a = 0.3, c = cos(a), s = sin(a);
+    ted4_camera moved;
 
-    pr.view = (ted4_view) {
-        .width = WIDTH,
-        .height = HEIGHT,
-        .fx = 34.0f,
-        .fy = 36.0f,
-        .cx = 15.0f,
-        .cy = 12.5f,
-        .R = { (float)c, 0, (float)-s, 0, 1, 0, (float)s, 0, (float)c },
-        .t = { 0.1f, -0.2f, 2.6f },
-        .near_z = 0.02f,
-        .background = { 0.2f, 0.5f, 0.8f },
+    pr.given = (ted4_camera) {
+        WIDTH, HEIGHT, 34, 36, 15, 12.5, { c, 0, -s, 0, 1, 0, s, 0, c }, { -0.6, -0.25, 5.4 }
     };
-    for (int j = 0; j < 3; j++)
-        pr.camera[j] = -(pr.view.R[j] * pr.view.t[0] + pr.view.R[3 + j] * pr.view.t[1] +
-                         pr.view.R[6 + j] * pr.view.t[2]);
+    pr.poses = (ted4_poses) { .n = 1,
+                              .of = &pr.pose,
+                              .value = &pr.motion,
+                              .gradient = &pr.d_motion,
+                              .seen = &pr.seen,
+                              .unit = 2.0 };
+    moved = pr.given;
+    for (int i = 0; i < TED4_POSE_VALUES; i++) {
+        pr.motion[i] = (float)(0.3 * ref_uniform());
+        pr.theta[pr.n_model + (size_t)i] = (double)pr.motion[i];
+    }
+    ted4_pose_move(&pr.poses, 0, &moved);
+    ted4_normalise_view(&pr.layout.head, &moved, &pr.view, pr.camera);
 }
 
 static void make(uint32_t seed, uint32_t num, int activation, int stage2)
@@ -142,7 +157,8 @@ static void make(uint32_t seed, uint32_t num, int activation, int stage2)
     memset(&pr, 0, sizeof pr);
     ref_source = random_seed(77u * seed + 5u);
     ted4_layout_make(&pr.layout, &h);
-    pr.n_theta = pr.layout.n_net + channel_at(N_BLOCKS, 0, 0);
+    pr.n_model = pr.layout.n_net + channel_at(N_BLOCKS, 0, 0);
+    pr.n_theta = pr.n_model + TED4_POSE_VALUES;
     assert_true(pr.n_theta <= MAX_THETA);
     assert_true(pr.layout.shape.n_nete <= REF_MAX_NET);
     pr.num = num;
@@ -167,7 +183,7 @@ static void make(uint32_t seed, uint32_t num, int activation, int stage2)
         pr.truth[i] = (uint8_t)(128.0 + 40.0 * ref_uniform() +
                                 60.0 * sin((double)(i / 3 % WIDTH) * 0.5 + (double)(i % 3)));
     make_view();
-    for (size_t i = 0; i < pr.n_theta; i++)
+    for (size_t i = 0; i < pr.n_model; i++)
         pr.theta[i] = (double)(i < pr.layout.n_net ? pr.net[i] : pr.attr[i - pr.layout.n_net]);
 }
 
@@ -241,6 +257,7 @@ static void distortion_backward(ted4_raster *raster, ted4_generator *g,
     assert_int_equal(ted4_raster_backward(adjoint, raster, s, &pr.view, NULL, pr.d_image, &gr), 0);
     ted4_adjoint_free(adjoint);
     assert_int_equal(ted4_generate_backward(g, in, &gr, NULL, d_attr, pr.d_net), 0);
+    ted4_pose_backward(&pr.poses, 0, &pr.view, s, &gr, ted4_generate_camera_gradient(g), NULL);
 }
 
 /* Fills the gradient, residuals and image; returns the loss. */
@@ -282,9 +299,11 @@ static double analytic(void)
         for (int t = 0; t < TED4_TYPES; t++)
             loss += (double)pr.bit_weight * bits[t];
     }
-    for (size_t i = 0; i < pr.n_theta; i++)
+    for (size_t i = 0; i < pr.n_model; i++)
         pr.gradient[i] =
             (double)(i < pr.layout.n_net ? pr.d_net[i] : pr.d_attr[i - pr.layout.n_net]);
+    for (size_t i = 0; i < TED4_POSE_VALUES; i++)
+        pr.gradient[pr.n_model + i] = (double)pr.d_motion[i];
     ted4_generator_free(g);
     ted4_rate_free(rate);
     ted4_raster_free(raster);
@@ -340,19 +359,28 @@ static void reference_values(const double *theta, const ref_result *r, int visib
             x[c] += r->steps[t] * pr.residual[channel_at(visible, c, j)];
 }
 
+/* The view of what ref_pose_splat has moved. */
+static ted4_view in_camera_axes(void)
+{
+    ted4_view v = pr.view;
+
+    memset(v.R, 0, sizeof v.R);
+    memset(v.t, 0, sizeof v.t);
+    v.R[0] = v.R[4] = v.R[8] = 1;
+    return v;
+}
+
 static double reference(const double *theta)
 {
     static double image[3 * PIXELS];
     const ted4_layout *l = &pr.layout;
-    const ref_query q = {
-        l->head,       pr.num,
-        pr.den,        { (double)pr.camera[0], (double)pr.camera[1], (double)pr.camera[2] },
-        pr.activation, theta,
-        l->bank
-    };
+    ref_query q = { l->head, pr.num, pr.den, { 0 }, pr.activation, theta, l->bank };
+    ref_pose pose;
     double bits = 0, l1, ssim;
     size_t n = 0;
 
+    ref_pose_of(&l->head, &pr.given, theta + pr.n_model, &pose);
+    memcpy(q.camera, pose.centre, sizeof q.camera);
     for (int i = 0; i < N_BLOCKS; i++)
         for (int j = 0; j < TED4_LANES; j++) {
             double p[3], x[REF_MAX_CHANNELS], base[REF_MAX_CHANNELS];
@@ -370,7 +398,11 @@ static double reference(const double *theta)
             ref_generate(&q, x, base, p, pr.splat + n);
             n += OFFSETS;
         }
-    const size_t seen = ref_render(&pr.view, (const double(*)[REF_SPLAT])pr.splat, n, image);
+    const ted4_view view = in_camera_axes();
+
+    for (size_t i = 0; i < n; i++)
+        ref_pose_splat(&pose, pr.splat[i]);
+    const size_t seen = ref_render(&view, (const double(*)[REF_SPLAT])pr.splat, n, image);
     const ref_picture picture = { WIDTH, HEIGHT, image, pr.truth };
 
     assert_int_equal(n, ANCHORS * OFFSETS);
@@ -380,7 +412,7 @@ static double reference(const double *theta)
 
 /* ---- directions ---- */
 
-/* A part of the model: network values, or channels, [first, first + n). */
+/* A part of the parameters: network values, or channels, [first, first + n). */
 typedef struct {
     const char *name;
     size_t first, n;
@@ -402,6 +434,7 @@ static size_t list_parts(part *p)
 
         p[n++] = (part) { nets[i], l->shape.netr[i].first, end - l->shape.netr[i].first, 0 };
     }
+    p[n++] = (part) { "pose", pr.n_model, TED4_POSE_VALUES, 0 };
     p[n++] = (part) { "bank", l->bank, l->shape.n_bank, 0 };
     if (pr.stage2)
         p[n++] = (part) { "prior", l->nete, l->shape.n_nete, 0 };
@@ -507,6 +540,7 @@ static void test_renderer(void **state)
     for (size_t i = 0; i < s.n; i++)
         for (int c = 0; c < REF_SPLAT; c++)
             pr.splat[i][c] = (double)rounded[c][i];
+    pr.view = in_camera_axes();
     for (int c = 0; c < 3; c++) {
         s.mean[c] = rounded[c];
         s.scale[c] = rounded[3 + c];

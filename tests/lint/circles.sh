@@ -4,7 +4,7 @@
 # files, there or in any other folder of sources.
 bad=0
 python3 tests/lint/circles.py ref-encoder/train \
-    math,model,splat+raster+loss+rate,state,densify+resize,monitor,step,search,. || bad=1
+    math,model,splat+raster+loss+rate+pose,state,densify+resize,monitor,step,search,. || bad=1
 for folder in ref-decoder/base ref-decoder/norm ref-decoder/kernel ref-decoder/read \
     ref-decoder/render ref-decoder/tool ref-encoder/data ref-encoder/eval ref-encoder/write \
     ref-encoder/kernel ref-encoder/tool conformance/tool fuzz bench tools/scene; do

@@ -3,7 +3,7 @@
 # name). Folders are named from ref-decoder or ref-encoder. System headers are not looked at.
 rooms_1="train/math"
 rooms_2="$rooms_1 train/model"
-rooms_3="$rooms_2 train/splat train/raster train/loss train/rate"
+rooms_3="$rooms_2 train/splat train/raster train/loss train/rate train/pose"
 rooms_4="$rooms_3 train/state"
 rooms_5="$rooms_4 train/densify train/resize"
 rooms_6="$rooms_5 train/monitor"
@@ -30,6 +30,7 @@ ref-encoder/train/splat     base norm recon render math kernel $rooms_2
 ref-encoder/train/raster    base norm recon render math $rooms_2
 ref-encoder/train/loss      base norm recon render math data $rooms_2
 ref-encoder/train/rate      base norm recon render math kernel $rooms_2
+ref-encoder/train/pose      base norm render math data $rooms_2
 ref-encoder/train/state     base norm recon data $rooms_3
 ref-encoder/train/densify   math $rooms_4
 ref-encoder/train/resize    norm math $rooms_4

@@ -43,6 +43,7 @@ static inline void cloud_make(cloud_case *c, uint32_t frames)
     c->data = (ted4_dataset) { .pictures = &c->picture,
                                .n_pictures = 1,
                                .n_frames = frames,
+                               .n_cameras = 1,
                                .points = c->point[0],
                                .n_points = CLOUD_POINTS };
     (void)ted4_options_preset(&c->options, "draft");

@@ -8,7 +8,6 @@
 #include <string.h>
 
 #include "math/elementary.h"
-#include "train/model/normalise.h"
 #include "train/state/picture.h"
 
 /* MUST_AGREE: the share of the cameras that must agree. NEAR_BEST: a frame counts if its agreement
@@ -68,7 +67,7 @@ static int match_pictures(ted4_photo_votes *s, ted4_trainer *t)
         j.pixels = ted4_trainer_seen(t, i);
         if (j.pixels == NULL)
             return -1;
-        ted4_normalise_view(&t->layout.head, &pic->camera, &j.view, centre);
+        ted4_trainer_view(t, pic, &j.view, centre);
         j.frame = pic->frame;
         ted4_parallel_for(t->parallel, (s->n + RUN - 1) / RUN, match_run, &j);
         ted4_dataset_release(t->data, i);

@@ -15,7 +15,7 @@
 #include "train/model/header_from_options.h"
 
 #define MAGIC 0x34444554u /* "TED4" */
-enum { FORMAT = 9 };
+enum { FORMAT = 10 };
 
 /* One walk serves both directions: put() writes or reads the bytes at p. whole: includes the
  * monitor's last good state. left: when reading, the bytes of the file that put() has not read
@@ -361,6 +361,21 @@ static void walk_colour(stream *s, ted4_trainer *t)
     put(s, c->v, c->n_cameras * sizeof *c->v);
 }
 
+static void walk_poses(stream *s, ted4_trainer *t)
+{
+    ted4_poses *p = &t->poses;
+
+    expect(s, p->n);
+    put(s, &p->decision, sizeof p->decision);
+    put(s, &p->moved, sizeof p->moved);
+    put(s, p->steps, p->n * sizeof *p->steps);
+    put(s, p->value, p->n * sizeof *p->value);
+    put(s, p->m, p->n * sizeof *p->m);
+    put(s, p->v, p->n * sizeof *p->v);
+    s->failed |= !s->writing && !s->failed &&
+                 !(p->decision >= TED4_POSES_ON_TRIAL && p->decision <= TED4_POSES_GIVEN);
+}
+
 static void expect_digest(stream *s, ted4_trainer *t)
 {
     const int before = s->failed;
@@ -399,6 +414,7 @@ static void walk(stream *s, ted4_trainer *t)
     put(s, &t->order.round, sizeof t->order.round);
     s->failed |= !s->writing && !s->failed && !(order_is_whole(t) && numbers_are_possible(t));
     walk_colour(s, t);
+    walk_poses(s, t);
     walk_anchors(s, t);
     if (!s->failed)
         walk_networks(s, t);

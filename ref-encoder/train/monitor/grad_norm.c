@@ -183,7 +183,7 @@ int64_t ted4_gradients_anchor(const ted4_trainer *t, int term, int *finite)
         search_values(t, term, &best);
     else if (term == TED4_TERM_CENTRE)
         search_centres(t, &best);
-    else if (term != TED4_TERM_COLOUR)
+    else if (term < TED4_TERM_COLOUR)
         for (int k = ranges_of(&t->layout, term, r) - 1; k >= 0; k--)
             for (size_t i = 0; i < r[k].n; i++)
                 compare(&best, t->net.gradient[r[k].first + i], -1);

@@ -37,7 +37,7 @@ enum { ROW = 32 };
 
 static const char *const names[TED4_TERMS] = {
     "feature", "scaling", "offset", "phi",   "tau",   "masks",  "centres",
-    "heads",   "motion",  "bank",   "prior", "steps", "colour",
+    "heads",   "motion",  "bank",   "prior", "steps", "colour", "pose",
 };
 
 const char *ted4_term_name(int term)
@@ -113,6 +113,8 @@ int ted4_monitor_values(ted4_trainer *t, int anchors)
         return 0;
     if (!ted4_colour_finite(&t->colour))
         return ted4_monitor_anomaly(t, "not finite", -1, "map of ", "colour", "is not finite");
+    if (!ted4_poses_finite(&t->poses))
+        return ted4_monitor_anomaly(t, "not finite", -1, "motion of ", "pose", "is not finite");
 
     const int64_t anchor = ted4_gradients_bad_value(t, &term);
 

@@ -12,7 +12,6 @@
 #include "math/lane_sum.h"
 #include "train/model/formulas.h"
 #include "train/math/random.h"
-#include "train/model/normalise.h"
 #include "train/state/visible_blocks.h"
 
 /* PICTURES: training pictures that are sampled. DRAWS: anchors drawn for each picture, of which
@@ -240,7 +239,7 @@ static void sample_picture(sampling *s, size_t item, float *value)
     ted4_view v;
     float camera[3];
 
-    ted4_normalise_view(&t->layout.head, &pic->camera, &v, camera);
+    ted4_trainer_view(t, pic, &v, camera);
     bank_at(s, t->data->n_frames > 1 ? pic->frame : 0);
     for (uint64_t i = 0; i < DRAWS; i++) {
         const size_t block = (s->anchor = ted4_below(key, i, (uint32_t)t->anchors.n)) / TED4_LANES;

@@ -180,6 +180,41 @@ static void heads_backward(block_state *s)
                             moves ? s->d_moved : s->d_feature, !moves);
 }
 
+/* Forward: e = (p - c) / |p - c|, and c is the camera's centre. So dc = -(de - (de e) e) / |p - c|,
+ * which is added lane by lane to d_camera [3][32]. */
+static void view_backward(const block_state *s, const float *camera, const float *position,
+                          float *d_camera)
+{
+    const ted4_generator *g = s->g;
+    const int f = g->layout.head.feature_dim;
+    const int twice = g->layout.head.view == TED4_VIEW_FULL && g->chain[TED4_NET_DEFORM].n > 0;
+    const float *e, *d, *d2;
+
+    if (g->plane.view < 0)
+        return;
+    e = ted4_gen_plane(s->planes, g->plane.view);
+    d = ted4_gen_plane(s->d_feature, f);
+    d2 = ted4_gen_plane(s->d_moved, f);
+#pragma omp simd
+    for (int j = 0; j < TED4_LANES; j++) {
+        float de[3], along = 0, square = 0;
+
+        for (int c = 0; c < 3; c++) {
+            const float x = position[c * TED4_LANES + j] - camera[c];
+
+            de[c] = d[c * TED4_LANES + j] + (twice ? d2[c * TED4_LANES + j] : 0.0f);
+            along += de[c] * e[c * TED4_LANES + j];
+            square += x * x;
+        }
+        const float n = sqrtf(square);
+        const int32_t far = s->on[j] & -(n >= TED4_SHORT);
+
+        for (int c = 0; c < 3; c++)
+            d_camera[c * TED4_LANES + j] -=
+                ted4_lane_keep(far, (de[c] - along * e[c * TED4_LANES + j]) / n);
+    }
+}
+
 /* Forward: p' = p + m y, f' = f + m y'. So d_y = m d, with d the gradient of p' or f'. */
 static void deform_backward(block_state *s)
 {
@@ -271,8 +306,10 @@ static void activation_backward(block_state *s, const ted4_generate_input *in)
 }
 
 /* Backpropagates one visible block. d: memory for gradients of the planes of layer outputs;
- * d_inputs: memory for those of the heads' inputs. */
-static void backward_block(const ted4_gen_job *t, size_t visible, float *d, float *d_inputs)
+ * d_inputs: memory for those of the heads' inputs; d_camera [3][32]: the gradient of the camera's
+ * centre is added to it, lane by lane. */
+static void backward_block(const ted4_gen_job *t, size_t visible, float *d, float *d_inputs,
+                           float *d_camera)
 {
     const ted4_layout *l = &t->g->layout;
     block_state s;
@@ -288,6 +325,7 @@ static void backward_block(const ted4_gen_job *t, size_t visible, float *d, floa
     memset(s.d_attr, 0, (size_t)l->n_channels * TED4_LANES * sizeof *s.d_attr);
     splats_backward(&s, t->gr, visible);
     heads_backward(&s);
+    view_backward(&s, t->in->camera, t->in->position[visible], d_camera);
     if (t->g->chain[TED4_NET_DEFORM].n > 0)
         deform_backward(&s);
     feature_backward(&s);
@@ -303,6 +341,7 @@ void TED4_LEVELED(ted4_gen_backward)(void *arg, size_t chunk)
     const size_t n = ted4_gen_first(t->in->n_visible, chunk + 1) - first;
     const size_t n_groups = (n + TED4_GEN_GROUP - 1) / TED4_GEN_GROUP;
     float *d = g->d_planes + chunk * g->d_chunk, *grad = g->grad + chunk * g->n_grad;
+    float d_camera[3 * TED4_LANES] = { 0 };
 
     memset(grad, 0, g->n_grad * sizeof *grad);
     for (size_t i = 0; i < n_groups; i++) {
@@ -311,9 +350,16 @@ void TED4_LEVELED(ted4_gen_backward)(void *arg, size_t chunk)
 
         for (size_t visible = from; visible < to; visible++)
             backward_block(t, visible, d + (visible - from) * g->d_size,
-                           d + TED4_GEN_GROUP * g->d_size);
+                           d + TED4_GEN_GROUP * g->d_size, d_camera);
         for (int net = 0; net < TED4_NETS_R; net++)
             ted4_gen_chain_weights(g, &g->chain[net], ted4_gen_saved(g, from), d, to - from, grad);
+    }
+    for (int c = 0; c < 3; c++) {
+        float sum = 0;
+
+        for (int j = 0; j < TED4_LANES; j++)
+            sum += d_camera[c * TED4_LANES + j];
+        g->d_camera[chunk][c] = sum;
     }
 }
 

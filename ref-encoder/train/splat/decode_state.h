@@ -85,7 +85,9 @@ struct ted4_generator {
     size_t net_tail;    /* NETR offset of the layer after the effective one */
     size_t n_grad; /* floats of a chunk's gradients: the effective layer, then NETR from net_tail */
     float *grad;   /* [TED4_GEN_CHUNKS][n_grad] owned */
-    size_t d_size; /* floats of the gradients of one visible block's layer outputs */
+    float d_camera[TED4_GEN_CHUNKS][3]; /* gradient of the camera's centre, by chunk; then, in
+                                           chunk 0, the sum */
+    size_t d_size;   /* floats of the gradients of one visible block's layer outputs */
     size_t d_chunk;  /* floats of one chunk's scratch: TED4_GEN_GROUP times d_size, then d_feature
                         and d_moved (F + 3 planes each) */
     float *d_planes; /* [TED4_GEN_CHUNKS][d_chunk] owned */

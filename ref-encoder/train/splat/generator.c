@@ -92,5 +92,13 @@ int ted4_generate_backward(ted4_generator *g, const ted4_generate_input *in,
     ted4_parallel_for(p, TED4_GEN_CHUNKS, TED4_IN_USE(ted4_gen_backward), &t);
     ted4_parallel_for(p, TED4_GEN_CHUNKS, TED4_IN_USE(ted4_gen_sum_range), &t);
     TED4_IN_USE(ted4_gen_motion_backward)(g, in->net, d_net);
+    for (int chunk = 1; chunk < TED4_GEN_CHUNKS; chunk++)
+        for (int c = 0; c < 3; c++)
+            g->d_camera[0][c] += g->d_camera[chunk][c];
     return 0;
+}
+
+const float *ted4_generate_camera_gradient(const ted4_generator *g)
+{
+    return g->d_camera[0];
 }

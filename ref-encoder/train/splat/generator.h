@@ -42,5 +42,8 @@ int ted4_generate(ted4_generator *g, const ted4_generate_input *in, const ted4_p
 int ted4_generate_backward(ted4_generator *g, const ted4_generate_input *in,
                            const ted4_splat_grads *gr, const ted4_parallel *p, float *const *d_attr,
                            float *d_net);
+/* Returns the gradient [3] of in->camera from the last ted4_generate_backward: zero if nothing
+ * depends on the viewing direction. */
+const float *ted4_generate_camera_gradient(const ted4_generator *g);
 
 #endif

@@ -4,7 +4,6 @@
 
 #include <math.h>
 
-#include "train/model/normalise.h"
 #include "visible_blocks.h"
 
 /* Number of training pictures from which anchors are evaluated if opacity depends on the direction.
@@ -20,7 +19,7 @@ static int generate_all(ted4_trainer *t, uint32_t item, ted4_splats *s)
 
     if (ted4_visible_blocks_fill(t, NULL) != 0)
         return -1;
-    ted4_normalise_view(&t->layout.head, &t->data->pictures[item].camera, &v, in.camera);
+    ted4_trainer_view(t, &t->data->pictures[item], &v, in.camera);
     ted4_visible_blocks_quantise(t, TED4_QUANT_ROUND);
     in.n_visible = t->visible_blocks.n;
     in.attr = t->visible_blocks.used;

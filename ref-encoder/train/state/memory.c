@@ -46,6 +46,7 @@ void ted4_trainer_finish(ted4_trainer *t)
     ted4_adjoint_free(t->work.adjoint);
     ted4_loss_workspace_free(t->work.loss);
     ted4_colour_finish(&t->colour);
+    ted4_poses_finish(&t->poses);
     ted4_snapshot_free(&t->monitor.good);
     free(t->work.image);
     free(t->work.d_image);

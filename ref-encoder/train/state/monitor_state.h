@@ -24,6 +24,7 @@ typedef enum {
     /* Step sizes: the weights of the hyperprior that produce them, a part of PRIOR. */
     TED4_TERM_STEP,
     TED4_TERM_COLOUR, /* colour map of the picture's camera */
+    TED4_TERM_POSE,   /* motion of the picture's pose */
     TED4_TERMS
 } ted4_term;
 

@@ -7,14 +7,13 @@
 #include <string.h>
 
 #include "dropout.h"
-#include "train/model/normalise.h"
 #include "visible_blocks.h"
 
 int ted4_trainer_render(ted4_trainer *t, const ted4_picture *pic, int training, ted4_view *v,
                         ted4_generate_input *in, ted4_splats *s)
 {
     memset(in, 0, sizeof *in);
-    ted4_normalise_view(&t->layout.head, &pic->camera, v, in->camera);
+    ted4_trainer_view(t, pic, v, in->camera);
     if (ted4_visible_blocks_fill(t, v) != 0)
         return -1;
     if (training)

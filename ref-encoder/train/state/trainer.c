@@ -4,6 +4,8 @@
 
 #include <stdarg.h>
 
+#include "train/model/normalise.h"
+
 int ted4_trainer_fail(ted4_trainer *t, const char *format, ...)
 {
     va_list arguments;
@@ -30,6 +32,16 @@ int ted4_trainer_report(ted4_trainer *t, double spent)
         return 0;
     o->stopped = 1;
     return ted4_trainer_fail(t, "stopped");
+}
+
+void ted4_trainer_view(const ted4_trainer *t, const ted4_picture *pic, ted4_view *v,
+                       float centre[3])
+{
+    ted4_camera camera = pic->camera;
+
+    if (t->poses.n > 0)
+        ted4_pose_move(&t->poses, (size_t)(pic - t->data->pictures), &camera);
+    ted4_normalise_view(&t->layout.head, &camera, v, centre);
 }
 
 double ted4_rate_norm(const ted4_trainer *t)
@@ -71,6 +83,8 @@ int ted4_trainer_check(ted4_trainer *t, int anchors)
     if (anchors && !all_finite(t->anchors.data[TED4_ROW_POSITION],
                                t->anchors.n_blocks * (size_t)3 * TED4_LANES))
         return ted4_trainer_fail(t, "an anchor's position is not finite at step %llu", now);
+    if (!ted4_poses_finite(&t->poses))
+        return ted4_trainer_fail(t, "a pose is not finite at step %llu", now);
     return ted4_colour_finite(&t->colour)
                ? 0
                : ted4_trainer_fail(t, "a colour map is not finite at step %llu", now);

@@ -1,5 +1,5 @@
 /* trainer.h - the state of the training of one scene, and its upkeep. Source: paper; annex D.
- * Depends on model/, splat/, raster/, loss/, rate/.
+ * Depends on model/, splat/, raster/, loss/, rate/, pose/.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_TRAINER_H
 #define TED4_TRAINER_H
@@ -13,6 +13,7 @@
 #include "train/model/anchors.h"
 #include "train/model/options.h"
 #include "train/model/weight_grid.h"
+#include "train/pose/pose.h"
 #include "train/raster/raster_bwd.h"
 #include "train/rate/rate.h"
 #include "train/splat/generator.h"
@@ -112,6 +113,7 @@ typedef struct {
     ted4_anchors anchors;
     ted4_networks net;
     ted4_colour colour; /* no cameras if colour correction is off */
+    ted4_poses poses;   /* none if poses are not refined */
     double voxel;       /* voxel size for growth, in normalised space */
 
     /* Progress of the training: step/. */
@@ -147,7 +149,7 @@ void ted4_trainer_finish(ted4_trainer *t);
 
 /* Writes t->message, formatted as by printf. Returns -1. */
 int ted4_trainer_fail(ted4_trainer *t, const char *format, ...);
-/* Checks that all network weights, all colour maps and, if anchors is not 0, all values and
+/* Checks that all network weights, colour maps and poses and, if anchors is not 0, all values and
  * positions of anchors are finite. The rasteriser skips Gaussians that are not finite, so the loss
  * alone does not reveal them. Returns 0, or -1 with t->message. */
 int ted4_trainer_check(ted4_trainer *t, int anchors);
@@ -157,6 +159,11 @@ void ted4_trainer_busy(ted4_trainer *t, ted4_busy busy, double budget);
 /* Reports to the onlooker that so many steps were spent. Returns 0, or -1 with t->message if the
  * onlooker ends the work. */
 int ted4_trainer_report(ted4_trainer *t, double spent);
+
+/* Computes the view and the centre of the camera of a picture, in normalised space and at its
+ * refined pose. pic: one of t->data. */
+void ted4_trainer_view(const ted4_trainer *t, const ted4_picture *pic, ted4_view *v,
+                       float centre[3]);
 
 /* The rate norm: the number of values per anchor over which the weight of a bit is spread, in the
  * model at the start of stage 2 (before stage 2: in the initial model). */

@@ -2,6 +2,7 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "events.h"
 
+#include "pose_step.h"
 #include "schedule.h"
 #include "stages.h"
 #include "train/densify/densify.h"
@@ -74,6 +75,7 @@ int ted4_schedule_event(ted4_trainer *t)
     const ted4_train_options *o = &t->opt;
     const uint64_t i = t->iteration, stage1 = (uint64_t)o->stage1;
 
+    ted4_poses_decide(t);
     if (t->layout.first[TED4_TAU] >= 0 && !t->phase.stage2 && i == ted4_activation_step(o) &&
         ted4_activation_begin(t) != 0)
         return -1;

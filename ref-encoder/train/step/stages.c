@@ -12,7 +12,6 @@
 #include "train/model/header_from_options.h"
 #include "train/resize/feature_pca.h"
 #include "train/model/init.h"
-#include "train/model/normalise.h"
 #include "train/densify/short_lived.h"
 #include "train/state/anchor_appearance.h"
 #include "train/state/visible_blocks.h"
@@ -42,7 +41,7 @@ static void widen_spans(const ted4_trainer *t, float *span)
 
         if (pic->is_test)
             continue;
-        ted4_normalise_view(&t->layout.head, &pic->camera, &v, centre);
+        ted4_trainer_view(t, pic, &v, centre);
         for (size_t b = 0; b < a->n_blocks; b++) {
             const uint32_t seen = ted4_block_visible(t, b, &v);
 

@@ -8,6 +8,7 @@
 #include "events.h"
 #include "train/monitor/grad_norm.h"
 #include "loss_terms.h"
+#include "pose_step.h"
 #include "train/monitor/monitor.h"
 #include "train/monitor/rollback.h"
 #include "train/densify/densify.h"
@@ -100,6 +101,7 @@ static int backward(ted4_trainer *t, pass *p, uint64_t key)
     if (ted4_generate_backward(t->work.generator, &p->in, &t->work.splat_gradient, t->parallel,
                                t->visible_blocks.gradient, t->net.gradient) != 0)
         return ted4_trainer_fail(t, "no memory for gradients");
+    ted4_pose_gather(t, p->pic, &p->v, &p->s);
     ted4_update_bank(t);
     if (!t->phase.stage2) {
         ted4_densify_gather(t, &p->in, &p->s);
@@ -111,6 +113,7 @@ static int backward(ted4_trainer *t, pass *p, uint64_t key)
 static void apply(ted4_trainer *t, const pass *p)
 {
     ted4_update_parameters(t);
+    ted4_update_poses(t);
     t->monitor.norm[TED4_TERM_COLOUR] = 0;
     if (!p->corrected)
         return;

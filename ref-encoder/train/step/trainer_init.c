@@ -57,6 +57,8 @@ static int make_images(ted4_trainer *t)
         return ted4_trainer_fail(t, "no memory for images of %zu pixels", pixels);
     if (t->opt.colour && ted4_colour_init(&t->colour, t->data) != 0)
         return ted4_trainer_fail(t, "no memory for colour correction");
+    if (t->opt.poses && ted4_poses_init(&t->poses, t->data, &t->layout.head) != 0)
+        return ted4_trainer_fail(t, "no memory for poses");
     return 0;
 }
 

@@ -1,0 +1,23 @@
+/* pose_step.h - poses of training cameras during training: gradients, the step of the optimiser,
+ * and the decision whether refinement goes on. Depends on trainer.h.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#ifndef TED4_POSE_STEP_H
+#define TED4_POSE_STEP_H
+
+#include "train/state/trainer.h"
+
+/* Adds the gradient of one picture's loss to that of its pose, if poses are learnt. Call once for
+ * each picture of a step, after ted4_generate_backward; v and s as drawn. */
+void ted4_pose_gather(ted4_trainer *t, const ted4_picture *pic, const ted4_view *v,
+                      const ted4_splats *s);
+/* Does one step of Adam for the poses that have gathered gradients, and keeps the world where it
+ * is. Sets the norm of these gradients for the monitor. */
+void ted4_update_poses(ted4_trainer *t);
+
+/* Ends the trial of refinement, if it is due: after a fifth of stage 1. Given poses that are right
+ * only follow the noise of training, and cost quality if they do; so they are put back if what is
+ * seen has moved by less than a quarter of a pixel. Otherwise refinement goes on until the end.
+ * t->poses.decision and t->poses.moved receive the result. */
+void ted4_poses_decide(ted4_trainer *t);
+
+#endif
