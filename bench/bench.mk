@@ -182,6 +182,20 @@ bench-instructions: $B/bench/count_instructions.so $B/ted4scene $B/ted4enc
 
 .PHONY: cross-train deps-cross-train bench-instructions
 
+# Sweeps by GNU parallel and by job arrays of Slurm against one process, with kills: ten minutes.
+# The result is kept in bench/cluster.md if nothing was skipped.
+CLUSTER_TESTS = $(addprefix $B/tests/cluster/,merges sweeps)
+test-cluster: $(PROGS) $(BENCH_FILE:%=$B/bench/%) $B/bench/to_jpeg $(CLUSTER_TESTS)
+	@TED4_BUILD=$(abspath $B) sh tests/run.sh $(CLUSTER_TESTS)
+	@grep -q '^skipped' $(CLUSTER_TESTS:%=%.log) || \
+	    $(KEEP) bench/cluster.md sed -n 's/^result: //p' $(CLUSTER_TESTS:%=%.log)
+
+DEPS_CLUSTER = parallel slurmctld slurmd slurm-client munge
+deps-cluster: deps
+	@$(call INSTALL_DEBIAN,$(DEPS_CLUSTER))
+
+.PHONY: test-cluster deps-cluster
+
 # Programs that measure; tests build them, so that none breaks unseen.
 BENCH_PROGRAMS = $(addprefix $B/bench/,bench_raster bench_render bench_train bench_scale \
                  bench_decode rate_check spans lab_facts phases to_jpeg zoo_masks)

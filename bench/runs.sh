@@ -5,8 +5,9 @@
 # bench/equal.csv says that those sources write the same bytes. A row keeps the key of the sources
 # that made it. The script may be killed at any moment and called again, also several times at once:
 # programs are copied before use, each stage 1 that runs share and each own scene is made once,
-# trainings go on from their last checkpoint, and rows go into the table whole. The script sets
-# beforehand:
+# trainings go on from their last checkpoint, and rows go into the table whole: each is first a file
+# of its own, which is removed once the table has it. Several machines may work on one folder if
+# its locks hold between them (flock). The script sets beforehand:
 #     program                   its name
 #     build data work results   folders
 #     table                     the table of runs
@@ -24,12 +25,20 @@
 #                               out: there is no row then
 # and calls begin_runs "$@".
 # SPDX-License-Identifier: BSD-2-Clause
-only= list= missing= patterns= child=
+only= list= missing= patterns= child= build_only= shared= row_files= merge=
+
+. bench/row_files.sh
 
 die() { echo "$program: $*" >&2; exit 3; }
 value() { sed -n "s/.*\"$1\":\"\{0,1\}\([-0-9a-z.+]*\).*/\1/p" "$2"; }
 short_hash() { sha1sum | cut -c1-10; }
 measure_failure() { return 1; }
+
+# lock FD: of the file that is open there. 2: another run holds it.
+lock() {
+    flock -n "$1"
+    case $? in 0) ;; 1) return 2 ;; *) die "files below $work and $results cannot be locked" ;; esac
+}
 
 # What a training that ended by itself without a file ended with; fails for one that was ended from
 # outside. Signals that a program gets for what it does itself: ILL TRAP ABRT BUS FPE SEGV.
@@ -87,7 +96,7 @@ copy_programs() {
     programs=$work/programs-$version$measured
     mkdir -p "$work"
     (
-        flock 9
+        flock 9 || exit 1
         [ -d "$programs" ] && exit 0
         make -s B="$build" $(for p in $want; do echo "$build/$p"; done) || exit 1
         [ "$(sources)" = "$version" ] ||
@@ -98,23 +107,31 @@ copy_programs() {
     ) 9>"$work/programs.lock" || die "no programs"
 }
 
-# Where the scene lies, in $folder; own ones are made: own:NAME+size=96x64 by ted4scene NAME --size
-# 96x64. $judge: the scene whose pictures judge, if it is another. 2: another run is making it.
-find_scene() {
-    judge=
+# Where the scene lies, in $folder. $judge: the scene whose pictures judge, if it is another. The
+# end of stage 1 that this run shares with others, if runs do: $stage1_file.
+find_places() {
+    judge= stage1_file=
     case $where in *@*) judge=$data/${where#*@} ;; esac
     case $where in
-    own:*)  folder=$work/scenes/${where#own:}-$own_version
-            [ -d "$folder" ] && return 0
-            mkdir -p "$work/scenes"
-            exec 7>"$folder.lock"
-            flock -n 7 || return 2
-            [ -d "$folder" ] && return 0
-            rm -rf "$folder.part"
-            run "$programs/ted4scene" $(echo "${where#own:}" | sed 's/+/ --/g; s/=/ /g') \
-                -o "$folder.part" && mv "$folder.part" "$folder" ;;
+    own:*)  folder=$work/scenes/${where#own:}-$own_version ;;
     *)      folder=$data/${where%@*} ;;
     esac
+    [ -z "$share" ] ||
+        stage1_file=$work/stage1-$sources_now/$(echo "${where%@*} $stage1" | short_hash).stage1
+}
+
+# Own scenes are made: own:NAME+size=96x64 by ted4scene NAME --size 96x64. 2: another run is making
+# it.
+make_scene() {
+    case $where in own:*) ;; *) return 0 ;; esac
+    [ -d "$folder" ] && return 0
+    mkdir -p "$work/scenes"
+    exec 7>"$folder.lock"
+    lock 7 || return
+    [ -d "$folder" ] && return 0
+    rm -rf "$folder.part"
+    run "$programs/ted4scene" $(echo "${where#own:}" | sed 's/+/ --/g; s/=/ /g') \
+        -o "$folder.part" && mv "$folder.part" "$folder"
 }
 
 # train OUT OPTIONS...: to OUT.ted4, OUT.json and OUT.jsonl, once; goes on where it was killed. What
@@ -132,36 +149,17 @@ train() {
     rm -f "$out.checkpoint"
 }
 
-# The end of stage 1 that this run shares with others. 2: another run is making it.
+# 2: another run is making it.
 make_stage1() {
     [ -n "$share" ] || return 0
-    stage1_file=$work/stage1-$sources_now/$(echo "${where%@*} $stage1" | short_hash).stage1
     [ -s "$stage1_file" ] && return 0
     mkdir -p "${stage1_file%/*}"
     exec 7>"$stage1_file.lock"
-    flock -n 7 || return 2
+    lock 7 || return
     [ -s "$stage1_file" ] && return 0
     rm -f "${stage1_file%.stage1}.json"
     echo "$tag: stage 1: $where $stage1"
     train "${stage1_file%.stage1}" $stage1 --set stage2=0 && [ -s "$stage1_file" ]
-}
-
-count_cells() { echo "$1" | awk -F, '{ print NF }'; }
-
-# Into the table in place of the tag's older row; the table is sorted and never half-written.
-put_row() {
-    [ "$(count_cells "$row")" = "$(count_cells "$columns")" ] ||
-        { echo "$tag: malformed row: $row"; return 1; }
-    (
-        flock 9
-        {
-            echo "$columns"
-            {
-                [ ! -f "$csv" ] || sed 1d "$csv" | awk -F, -v tag="$tag" '$1 != tag'
-                echo "$row"
-            } | sort
-        } >"$csv.part" && mv "$csv.part" "$csv"
-    ) 9<"$results"
 }
 
 # Sources that are known to write the same bytes as $1, by the table equal.csv among the results,
@@ -196,33 +194,42 @@ is_equal() {
 }
 
 # done, equal (made by sources of the same bytes), older (same options, other sources), stale or
-# missing: $state; the row's key: $key; that of its training: $trained_key
+# missing: $state, by the table or by the file of the row, of which it had the key $had; the key of
+# the row that is wanted: $key; that of its training: $trained_key
 find_state() {
     sources_now=$version
     case $where in own:*) sources_now=$own_version ;; esac
     trained_key=$(echo "$where $options" | short_hash)-$sources_now
     key=$trained_key$measured
-    had=$([ -f "$csv" ] && awk -F, -v tag="$tag" '$1 == tag { print $2 }' "$csv")
-    case $had in
-    "$key")        state=done ;;
-    "${key%-*}"-*) if is_equal; then state=equal; else state=older; fi ;;
-    "")            state=missing ;;
-    *)             state=stale ;;
-    esac
+    state=missing
+    for had in $(key_in "$csv") $(key_in "$work/rows/$tag.row"); do
+        case $had in
+        "$key")        state=done; return ;;
+        "${key%-*}"-*) if is_equal; then state=equal; return; else state=older; fi ;;
+        *)             state=stale ;;
+        esac
+    done
+}
+
+# Is there nothing to do? Of the run whose $state was found.
+is_there() {
+    case $state$missing in done*|equal*|oldermissing) return 0 ;; *) return 1 ;; esac
 }
 
 # One row. 0: there. 1: failed. 2: something that it needs is being made by another run: later.
 make_row() {
     mkdir -p "$work/runs"
     exec 8>"$work/runs/$tag.lock"
-    flock -n 8 || return 2
+    lock 8 || return
     find_state
-    case $state$missing in done*|equal*|oldermissing) return 0 ;; esac
-    find_scene || return
+    is_there && return 0
+    find_places
+    make_scene || return
     for f in "$folder" "${judge:-$folder}"; do
         [ -d "$f" ] || { echo "$tag: skipped, no $f"; return 0; }
     done
     make_stage1 || return
+    [ -z "$shared" ] || return 0
     echo "$tag: ted4enc $where $options"
     train "$work/runs/$tag-$trained_key" $options
     trained=$?
@@ -249,9 +256,10 @@ each_chosen() {
     rm -f "$work/table.$$"
 }
 
-# Goes over all runs until none has to wait for another. A run that failed is not tried again.
+# Goes over all runs until none has to wait for another. A run that failed is not tried again. A
+# signal waits for the program under way, which may have a checkpoint to write.
 worker() {
-    trap '[ -z "$child" ] || kill $child 2>/dev/null; exit 143' TERM
+    trap '[ -z "$child" ] || { kill $child 2>/dev/null; wait $child; }; exit 143' TERM
     failed=
     while :; do
         later=
@@ -259,7 +267,7 @@ worker() {
             kill -0 $$ 2>/dev/null || exit 1
             case " $failed " in *" $tag "*) continue ;; esac
             find_state
-            case $state$missing in done*|equal*|oldermissing) continue ;; esac
+            is_there && continue
             make_row
             case $? in 0) ;; 2) later=1 ;; *) failed="$failed $tag" ;; esac
             exec 7>&- 8>&-
@@ -278,6 +286,10 @@ take_arguments() {
         case $1 in
         --list)    list=1 ;;
         --missing) missing=missing ;;
+        --build)   build_only=1 ;;
+        --shared)  shared=1 ;;
+        --row-files) row_files=1 ;;
+        --merge)   merge=1 ;;
         --jobs|--threads|--only)
                    [ $# -ge 2 ] || die "$1 needs a value"
                    case $1 in --jobs) jobs=$2 ;; --threads) threads=$2 ;; *) only=$2 ;; esac
@@ -300,6 +312,23 @@ list_chosen() {
     done
 }
 
+# Of what runs share and what is still to be made, the first run that needs it.
+list_shared() {
+    seen=
+    echo "$chosen" | while IFS='|' read -r groups tag scene where lambda keep stage1 options; do
+        find_state
+        is_there && continue
+        find_places
+        need=
+        case $where in own:*) [ -d "$folder" ] || need=$folder ;; esac
+        [ -z "$stage1_file" ] || [ -s "$stage1_file" ] || need="$need $stage1_file"
+        case $need in "") continue ;; esac
+        case $seen in *"<$need>"*) continue ;; esac
+        seen="$seen<$need>"
+        echo "$state $tag $groups:" $need
+    done
+}
+
 begin_runs() {
     take_arguments "$@"
     mkdir -p "$work" "$results" || exit 3
@@ -314,10 +343,16 @@ begin_runs() {
     chosen=$(each_chosen) || exit 3
     [ -n "$chosen" ] || die "no run chosen; --list shows them all"
     if [ -n "$list" ]; then
-        list_chosen
+        if [ -n "$shared" ]; then list_shared; else list_chosen; fi
         exit 0
     fi
+    if [ -n "$merge" ]; then
+        merge_chosen
+        exit
+    fi
     copy_programs
+    [ -z "$build_only" ] || exit 0
+    [ -n "$row_files" ] || merge_chosen
     echo "$chosen" >"$work/chosen.$$"
     workers=
     trap 'kill $workers 2>/dev/null; wait; rm -f "$work/chosen.$$"; exit 130' INT TERM HUP

@@ -5,13 +5,19 @@
 #                                       [PATTERN...]
 #     PATTERN...   runs of which a group or the tag fits one of these shell patterns; all runs
 #                  without any
-#     --only TAG   this run (for the array of a cluster: one job per tag of --list, all of them on
-#                  one TED4_WORK)
+#     --only TAG   this run
 #     --list       says of each run chosen what state it is in and how it is run, and does nothing
 #     --missing    leaves rows alone that the same options made with older sources
 #     --jobs N     N runs at a time, each of one thread; 1 with all cores without it
 #     --threads N  threads of each run instead
 # bench/runs.sh tells of keys, and of what happens when this is killed or run several times at once.
+# bench/cluster.md tells how to spread the runs over machines; its drivers use these:
+#     --build      builds the programs and does nothing else
+#     --shared     makes own scenes and the stage 1 that runs share, and no rows; with --list: the
+#                  first run of each that is missing
+#     --row-files  leaves each row in a file of its own, TED4_WORK/rows/TAG.row
+#     --merge      takes these files into the table and does nothing else, as every call without
+#                  --row-files does before its runs
 # Environment: TED4_BUILD (build), TED4_DATA (../shared/data), TED4_WORK (TED4_BUILD/sweep: what is
 # worth keeping between calls), TED4_RESULTS (bench), TED4_TABLE (bench/sweep.txt).
 # SPDX-License-Identifier: BSD-2-Clause

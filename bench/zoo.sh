@@ -7,8 +7,7 @@
 #                                     [PATTERN...]
 #     PATTERN...   runs of which a group or the tag fits one of these shell patterns; all runs
 #                  without any
-#     --only TAG   this run (for the array of a cluster: one job per tag of --list, all of them on
-#                  one TED4_WORK)
+#     --only TAG   this run (on many machines: bench/cluster.md)
 #     --list       says of each run chosen what state it is in and how it is run, and does nothing
 #     --missing    leaves rows alone that the same options made with older sources
 #     --jobs N     N runs at a time; as many as there are cores without it

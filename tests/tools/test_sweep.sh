@@ -8,41 +8,9 @@ unset TED4_WORK
 . tests/support/speak.sh
 need sweep python3
 
-cat >"$out/table.txt" <<END
-lambdas 0.001
-base --preset draft
-scene room  room
-scene upper room      --downscale 2 --hold-out cam10
-scene other room@tint --downscale 2
-run rd whole room,upper,other 1 -
-END
-mkdir -p "$out/build/bench" "$out/bin" "$out/data/room" "$out/data/tint"
-# stand_in PROGRAM: it does what stdin says.
-stand_in() { { echo '#!/bin/sh'; cat; } >"$out/$1"; chmod +x "$out/$1"; }
-stand_in bin/make </dev/null
-stand_in build/ted4enc <<END
-while [ \$# -gt 0 ]; do
-    case \$1 in -o) file=\$2 ;; --log) log=\$2 ;; --hold-out) held=\$2 ;; --stage1) first=\$2 ;; esac
-    shift
-done
-echo "train \${held:-}" >>"$out/calls"
-echo x >"\$file"
-echo x >"\$first"
-echo '{"step":250,"stage":"1","loss":0.5,"psnr":20,"anchors":5,"bytes":0,"ms":4,"seconds":1.25,"cpu_seconds":0.5}' >"\$log"
-echo '{"anchors":5,"gaussians":9,"dynamic":2,"estimated_bits":10,"coded_bits":11,"hash":"abc"}'
-END
-stand_in build/ted4eval <<END
-shift
-echo "eval \$*" | sed 's/ [^ ]*\/data\// /' >>"$out/calls"
-echo '{"psnr":30.25,"bytes":123}'
-END
-echo 'echo "{\"decode_ms\":5}"' | stand_in build/ted4dec
-echo 'echo "{\"budget\":[]}"' | stand_in build/ted4info
-for program in build/ted4scene build/bench/rate_check build/bench/spans build/bench/to_jpeg; do
-    echo 'echo "{}"' | stand_in $program
-done
-PATH=$out/bin:$PATH TED4_BUILD=$out/build TED4_RESULTS=$out TED4_TABLE=$out/table.txt \
-    TED4_DATA=$out/data bench/sweep.sh --jobs 1 >"$out/said" 2>&1 &&
+. tests/support/sweep_stand_ins.sh
+
+stand_ins --jobs 1 >"$out/said" 2>&1 &&
     [ "$(cut -d, -f1,7 "$out/sweep.csv" | tr '\n' ' ')" = \
         "tag,psnr other-whole-1,30.25 room-whole-1,30.25 upper-whole-1,30.25 " ] &&
     ok rows || fail rows "$(cat "$out/said" "$out/sweep.csv")"
@@ -50,4 +18,16 @@ sed -i 's/ --json.*//' "$out/calls"
 [ "$(sort "$out/calls" | uniq | tr '\n' ';')" = "eval room --anyway --downscale 1;eval room \
 --hold-out cam10 --anyway --downscale 2;eval tint --anyway --downscale 1;train ;train cam10;" ] &&
     ok held_out || fail held_out "$(cat "$out/calls")"
+
+# Rows in files of their own leave the table alone until they are merged into it.
+mv "$out/sweep.csv" "$out/whole.csv"
+stand_ins --row-files >"$out/said" 2>&1
+[ ! -e "$out/sweep.csv" ] && [ "$(ls "$out/build/sweep/rows" | tr '\n' ' ')" = \
+    "other-whole-1.row room-whole-1.row upper-whole-1.row " ] && ok row_files ||
+    fail row_files "$(cat "$out/said")"
+[ "$(stand_ins --list | cut -d' ' -f1 | uniq)" = done ] && ok state_of_row_files ||
+    fail state_of_row_files "$(stand_ins --list)"
+stand_ins --merge >"$out/said" 2>&1
+cmp -s "$out/sweep.csv" "$out/whole.csv" && [ -z "$(ls "$out/build/sweep/rows")" ] && ok merge ||
+    fail merge "$(cat "$out/said")"
 exit $bad
