@@ -260,6 +260,31 @@ int ted4_run_log_event(ted4_run_log *l, const ted4_trainer *t, char *why, size_t
     return put_line(l, line, (size_t)n, why, why_size);
 }
 
+int ted4_run_log_closing(ted4_run_log *l, const ted4_trainer *t, char *why, size_t why_size)
+{
+    const ted4_closing *c = &t->closing;
+    char line[200];
+
+    if (l->teller != NULL)
+        ted4_teller_say(l->teller,
+                        "closing: %llu of %llu anchors moved, and the motion of %llu explained "
+                        "nothing",
+                        (unsigned long long)c->moving, (unsigned long long)c->anchors,
+                        (unsigned long long)c->closed);
+    if (l->file < 0)
+        return 0;
+
+    const int n = snprintf(line, sizeof line,
+                           "{\"step\":%llu,\"event\":\"closing\",\"rollbacks\":%llu,"
+                           "\"anchors\":%llu,\"moving\":%llu,\"closed\":%llu}\n",
+                           (unsigned long long)t->iteration,
+                           (unsigned long long)t->monitor.state.rollbacks,
+                           (unsigned long long)c->anchors, (unsigned long long)c->moving,
+                           (unsigned long long)c->closed);
+
+    return put_line(l, line, (size_t)n, why, why_size);
+}
+
 int ted4_run_log_trials(ted4_run_log *l, const ted4_trainer *t, size_t first, char *why,
                         size_t why_size)
 {

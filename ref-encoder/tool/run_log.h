@@ -100,6 +100,13 @@ int ted4_run_log_trials(ted4_run_log *l, const ted4_trainer *t, size_t first, ch
  *   refined                true: refinement goes on; false: the given poses are put back
  * Returns the same as ted4_run_log_step. */
 int ted4_run_log_poses(ted4_run_log *l, const ted4_trainer *t, char *why, size_t why_size);
+/* Writes one line about the closing of still anchors (train/densify/still_anchors.h):
+ *   step                   the step at which training continues
+ *   event                  "closing"
+ *   rollbacks              number of rollbacks so far
+ *   anchors moving closed  numbers of anchors; of those that moved; of those that no longer do
+ * Returns the same as ted4_run_log_step. */
+int ted4_run_log_closing(ted4_run_log *l, const ted4_trainer *t, char *why, size_t why_size);
 /* Closes the file. Returns 0, or -1 with why filled. */
 int ted4_run_log_close(ted4_run_log *l, char *why, size_t why_size);
 

@@ -40,15 +40,22 @@ static void put_light(FILE *f, const ted4_trainer *t)
             flicker, t->opt.bank_rows, t->data->n_frames);
 }
 
-/* No trial decides which anchors move: training does, with the same weight of a bit. */
+/* No trial decides which anchors move: training does, and the closing of still anchors. */
 static void put_moving(FILE *f, const ted4_trainer *t)
 {
-    if (t->opt.capacity && t->layout.head.motion != TED4_MOTION_NONE &&
-        t->layout.head.temporal_mask)
-        fprintf(f,
-                "capacity.moving=%zu of %zu anchors: masks learn in every step whether motion is "
-                "worth its bits\n",
-                ted4_count_dynamic(t), t->anchors.n);
+    const ted4_closing *c = &t->closing;
+
+    if (!t->opt.capacity || t->layout.head.motion == TED4_MOTION_NONE ||
+        !t->layout.head.temporal_mask)
+        return;
+    fprintf(f,
+            "capacity.moving=%zu of %zu anchors: masks learn in every step whether motion is worth "
+            "its bits",
+            ted4_count_dynamic(t), t->anchors.n);
+    if (c->moving > 0)
+        fprintf(f, ", and in stage 1 the motion of %llu of %llu explained nothing",
+                (unsigned long long)c->closed, (unsigned long long)c->moving);
+    fprintf(f, "\n");
 }
 
 static void put_trial(FILE *f, size_t number, const struct ted4_trial *x)

@@ -211,13 +211,15 @@ static int fail_step(ted4_training *t)
     return fail(t);
 }
 
-/* Makes one step, and logs restarts, rollbacks, decisions and trials that happened in it. */
+/* Makes one step, and logs restarts, rollbacks, decisions, trials and the closing of anchors that
+ * happened in it. */
 static int step(ted4_training *t)
 {
     ted4_trainer *tr = t->trainer;
     const uint64_t before = tr->iteration, rollbacks = tr->monitor.state.rollbacks;
     const size_t trials = tr->search.n_trials;
     const ted4_poses_decision poses = tr->poses.decision;
+    const int closed = tr->closing.moving > 0;
 
     if (ted4_trainer_step(tr) != 0)
         return fail_step(t);
@@ -227,6 +229,9 @@ static int step(ted4_training *t)
         return -1;
     if (tr->poses.decision != poses && tr->poses.decision != TED4_POSES_ON_TRIAL &&
         tell_poses(t) != 0)
+        return -1;
+    if (!closed && tr->closing.moving > 0 &&
+        ted4_run_log_closing(&t->log, tr, t->why, sizeof t->why) != 0)
         return -1;
     if (tr->search.n_trials > trials &&
         ted4_run_log_trials(&t->log, tr, trials, t->why, sizeof t->why) != 0)

@@ -109,6 +109,7 @@ static void begin(ted4_trainer *t)
     t->search.probed = 1;
     t->search.probe_loss[0] = fresh_number();
     t->search.probe_loss[1] = fresh_number();
+    t->closing = (ted4_closing) { 31, 21, 11 };
     t->order.next = 2;
     t->order.round = 9;
     t->order.item[0] ^= t->order.item[1];
@@ -187,6 +188,7 @@ static void check_search(const ted4_trainer *a, const ted4_trainer *b)
 {
     assert_int_equal(a->search.probed, b->search.probed);
     assert_memory_equal(a->search.probe_loss, b->search.probe_loss, sizeof a->search.probe_loss);
+    assert_memory_equal(&a->closing, &b->closing, sizeof a->closing);
     assert_int_equal(a->search.decided, b->search.decided);
     assert_int_equal(a->search.n_trials, b->search.n_trials);
     for (size_t i = 0; i < a->search.n_trials; i++)

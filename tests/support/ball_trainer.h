@@ -45,7 +45,7 @@ static inline ted4_train_options ball_options(void)
         "init_anchors=150", "max_anchors=260", "grow_every=20",
         "lr_feature=0.03",  "lr_heads=0.02",   "lr_scaling=0.03",
         "lr_offset=0.03",   "lr_motion=0.005", "lr_phi=0.02",
-        "lr_mask=0.05",     "capacity=0",
+        "lr_mask=0.05",     "capacity=0",      "motion_worth=0",
     };
     ted4_train_options o;
 

@@ -73,6 +73,8 @@ static const char *const usual[] = { "ted4enc",
                                      "grow_every=20",
                                      "--set",
                                      "capacity=0",
+                                     "--set",
+                                     "motion_worth=0.02",
                                      NULL };
 
 /* Becomes the program, in the child process. Files cannot grow beyond limit bytes (0: any size);

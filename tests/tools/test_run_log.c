@@ -95,6 +95,19 @@ static void check_poses(const json_t *line)
     assert_true(json_is_false(json_object_get(line, "refined")));
 }
 
+/* Still anchors are closed before step 455, the 456th. */
+static void check_closing(const json_t *line, const log_state *s)
+{
+    assert_string_equal(json_string_value(json_object_get(line, "event")), "closing");
+    assert_true(s->step == 250);
+    assert_true(number(line, "step") == 456);
+    assert_true(number(line, "rollbacks") == 0);
+    assert_true(number(line, "moving") > 0);
+    assert_true(number(line, "moving") <= number(line, "anchors"));
+    assert_true(number(line, "closed") > 0);
+    assert_true(number(line, "closed") < number(line, "moving"));
+}
+
 static void test_log(void **state)
 {
     log_state s = { 0, 0, 0 };
@@ -111,9 +124,11 @@ static void test_log(void **state)
             check_line(line, &s, (double)reference.file.size);
         else if (events++ == 0)
             check_poses(line);
+        else
+            check_closing(line, &s);
         json_decref(line);
     }
-    assert_int_equal(events, 1);
+    assert_int_equal(events, 2);
     assert_true(s.step == STEPS);
     assert_true(s.cpu > 0);
 }
@@ -215,7 +230,7 @@ static void test_rollback(void **state)
         strstr(text, "{\"step\":250,\"event\":\"rollback\",\"rollbacks\":1,\"failed\":300,"
                      "\"cause\":\"not finite\","
                      "\"term\":\"value of "
-                     "offset\",\"anchor\":5,\"factor\":0.5}\n{\"step\":500,\"stage\":\"1\","),
+                     "offset\",\"anchor\":5,\"factor\":0.5}\n{\"step\":456,\"event\":\"closing\","),
         text);
     assert_non_null(strstr(strchr(text, '\n'), "\"rollbacks\":1,"));
     first = read_file("out/x.ted4");

@@ -15,7 +15,7 @@
 #include "train/model/header_from_options.h"
 
 #define MAGIC 0x34444554u /* "TED4" */
-enum { FORMAT = 10 };
+enum { FORMAT = 11 };
 
 /* One walk serves both directions: put() writes or reads the bytes at p. whole: includes the
  * monitor's last good state. left: when reading, the bytes of the file that put() has not read
@@ -406,6 +406,7 @@ static void walk(stream *s, ted4_trainer *t)
     put(s, &t->phase.stage2_start, sizeof t->phase.stage2_start);
     put(s, &t->search.probed, sizeof t->search.probed);
     put(s, t->search.probe_loss, sizeof t->search.probe_loss);
+    put(s, &t->closing, sizeof t->closing);
     put(s, &t->progress, sizeof t->progress);
     put(s, &t->monitor.state, sizeof t->monitor.state);
     expect(s, t->order.n);

@@ -85,6 +85,11 @@ typedef struct {
     ted4_header rate_norm_header;
 } ted4_phase;
 
+/* What closing still anchors found; 0 before. */
+typedef struct {
+    uint64_t anchors, moving, closed; /* of moving, before */
+} ted4_closing;
+
 /* Workspaces and images of a step. */
 typedef struct {
     ted4_generator *generator;
@@ -125,6 +130,9 @@ typedef struct {
     ted4_order order;
     ted4_progress progress;
     ted4_monitor monitor;
+
+    /* Results about motion: densify/still_anchors.h. */
+    ted4_closing closing;
 
     /* Results about the size of the model: search/. */
     ted4_search search;

@@ -7,6 +7,7 @@
 #include "stages.h"
 #include "train/densify/densify.h"
 #include "train/densify/mv_seed.h"
+#include "train/densify/still_anchors.h"
 
 /* Share of stage 1 before the first adjustment of anchors. Statistics are gathered from step 0. */
 #define GROW_FROM 0.05
@@ -16,6 +17,10 @@
  * things, so it precedes the probe. */
 #define MV_SEED_AT             0.3
 #define MV_SEED_AT_ALTERNATING 0.2
+
+/* Share of stage 1 before still anchors are closed: most growth is over, and what is left of the
+ * stage repairs what closing changed. */
+#define CLOSE_AT 0.65
 
 static uint64_t mv_seed_step(const ted4_trainer *t, int reach)
 {
@@ -84,6 +89,9 @@ int ted4_schedule_event(ted4_trainer *t)
     if (!t->phase.stage2 && i > (uint64_t)(GROW_FROM * (double)stage1) &&
         i <= (uint64_t)(o->grow_until * (double)stage1) && i % (uint64_t)o->grow_every == 0 &&
         ted4_densify_adjust(t, ted4_growth_allowance(t)) != 0)
+        return -1;
+    if (!t->phase.stage2 && i == (uint64_t)(CLOSE_AT * (double)stage1) &&
+        ted4_close_still_anchors(t) != 0)
         return -1;
     if (i == stage1 && !t->phase.stage2 && o->stage2 > 0 && ted4_stage2_begin(t) != 0)
         return -1;
