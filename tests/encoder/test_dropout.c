@@ -149,14 +149,14 @@ static void test_only_steps(void **state)
     ball_set(&o, "dropout=0.9");
     ball_begin(&t, &o, &balls, NULL);
     t.iteration = (uint64_t)o.stage1 - 1;
-    assert_int_equal(ted4_trainer_render(&t, &balls.pictures[0], 0, &v, &in, &s), 0);
+    assert_int_equal(ted4_trainer_render(&t, &balls.pictures[0], TED4_PASS_IMAGE, &v, &in, &s), 0);
 
     const size_t all = s.n;
 
-    assert_int_equal(ted4_trainer_render(&t, &balls.pictures[0], 1, &v, &in, &s), 0);
+    assert_int_equal(ted4_trainer_render(&t, &balls.pictures[0], TED4_PASS_STEP, &v, &in, &s), 0);
     assert_true(s.n < all);
     t.opt.dropout = 0;
-    assert_int_equal(ted4_trainer_render(&t, &balls.pictures[0], 1, &v, &in, &s), 0);
+    assert_int_equal(ted4_trainer_render(&t, &balls.pictures[0], TED4_PASS_STEP, &v, &in, &s), 0);
     assert_int_equal(s.n, all);
     ted4_trainer_finish(&t);
 }

@@ -460,7 +460,8 @@ static void test_batch(void **state)
         ted4_generate_input in;
         ted4_splats s;
 
-        assert_int_equal(ted4_trainer_render(&t, &balls.pictures[0], 1, &v, &in, &s), 0);
+        assert_int_equal(ted4_trainer_render(&t, &balls.pictures[0], TED4_PASS_STEP, &v, &in, &s),
+                         0);
         memset(t.work.d_image, 0, 3 * BALL_W * BALL_H * sizeof *t.work.d_image);
         t.work.d_image[BALL_W * BALL_H / 2 + BALL_W / 2] = 1;
         assert_int_equal(ted4_trainer_render_backward(&t, &v, &s), 0);

@@ -9,14 +9,14 @@
 #include "dropout.h"
 #include "visible_blocks.h"
 
-int ted4_trainer_render(ted4_trainer *t, const ted4_picture *pic, int training, ted4_view *v,
+int ted4_trainer_render(ted4_trainer *t, const ted4_picture *pic, ted4_pass pass, ted4_view *v,
                         ted4_generate_input *in, ted4_splats *s)
 {
     memset(in, 0, sizeof *in);
     ted4_trainer_view(t, pic, v, in->camera);
     if (ted4_visible_blocks_fill(t, v) != 0)
         return -1;
-    if (training)
+    if (pass == TED4_PASS_STEP)
         ted4_dropout(t);
     in->layout = &t->layout;
     in->net = t->net.value;
@@ -27,11 +27,12 @@ int ted4_trainer_render(ted4_trainer *t, const ted4_picture *pic, int training, 
     in->num = t->data->n_frames > 1 && !t->phase.clock_stopped ? pic->frame : 0;
     in->den = t->data->n_frames > 1 ? t->data->n_frames - 1 : 1;
     in->activation = t->layout.head.activation && !t->phase.clock_stopped;
-    ted4_visible_blocks_quantise(t, training && !t->phase.integer ? TED4_QUANT_NOISE
-                                                                  : TED4_QUANT_ROUND);
+    ted4_visible_blocks_quantise(
+        t, pass != TED4_PASS_IMAGE && !t->phase.integer ? TED4_QUANT_NOISE : TED4_QUANT_ROUND);
     ted4_generator_pack(t->work.generator, t->net.value);
     if (ted4_generate(t->work.generator, in, t->parallel, s) != 0 ||
-        ted4_raster_forward(t->work.raster, s, v, t->parallel, training, t->work.image) != 0)
+        ted4_raster_forward(t->work.raster, s, v, t->parallel, pass != TED4_PASS_IMAGE,
+                            t->work.image) != 0)
         return ted4_trainer_fail(t, "no memory to render");
     return 0;
 }
@@ -85,7 +86,7 @@ int ted4_trainer_draw(ted4_trainer *t, const ted4_picture *pic, ted4_view *v, fl
     ted4_generate_input in;
     ted4_splats s;
 
-    if (ted4_trainer_render(t, pic, 0, v, &in, &s) != 0)
+    if (ted4_trainer_render(t, pic, TED4_PASS_IMAGE, v, &in, &s) != 0)
         return -1;
     memcpy(centre, in.camera, sizeof in.camera);
     return 0;
@@ -144,7 +145,7 @@ static double judge(ted4_trainer *t, size_t item, int keep, ted4_view *v, ted4_s
 
     if (truth == NULL)
         return -1;
-    if (ted4_trainer_render(t, pic, keep, v, &in, s) == 0) {
+    if (ted4_trainer_render(t, pic, keep ? TED4_PASS_JUDGE : TED4_PASS_IMAGE, v, &in, s) == 0) {
         loss = ted4_trainer_loss(t, pic, truth, keep ? map : NULL, &l1, &ssim);
         if (!(loss >= 0))
             ted4_trainer_fail(t, loss < 0 ? "no memory for the loss" : "the loss is not finite");
@@ -183,7 +184,7 @@ static double preview(ted4_trainer *t, size_t item)
     if (truth == NULL)
         return -1;
 
-    const int bad = ted4_trainer_render(t, pic, 0, &v, &in, &s) != 0;
+    const int bad = ted4_trainer_render(t, pic, TED4_PASS_IMAGE, &v, &in, &s) != 0;
     const size_t pixels = bad ? 0 : (size_t)v.width * (size_t)v.height;
 
     for (int c = 0; c < 3; c++)

@@ -7,14 +7,21 @@
 
 #include "trainer.h"
 
+/* What a forward pass is for. */
+typedef enum {
+    TED4_PASS_IMAGE, /* the image only */
+    TED4_PASS_STEP,  /* a training step: with the dropout of stage 1, the noise of stage 2, and
+                        everything that the rasteriser's backward pass needs */
+    TED4_PASS_JUDGE  /* the gradients of all anchors: the same without dropout */
+} ted4_pass;
+
 /* Does the forward pass of one picture. Fills t->visible_blocks for its view, and t->work.image,
- * planar. training: with the noise of stage 2, and with everything that the rasteriser's backward
- * pass needs. *in and *s borrow from t, and are valid until the next pass. Returns 0, or -1 with
+ * planar. *in and *s borrow from t, and are valid until the next pass. Returns 0, or -1 with
  * t->message filled. */
-int ted4_trainer_render(ted4_trainer *t, const ted4_picture *pic, int training, ted4_view *v,
+int ted4_trainer_render(ted4_trainer *t, const ted4_picture *pic, ted4_pass pass, ted4_view *v,
                         ted4_generate_input *in, ted4_splats *s);
-/* Backpropagates t->work.d_image to t->work.splat_gradient, after a forward pass with training.
- * Returns 0, or -1 with t->message filled. */
+/* Backpropagates t->work.d_image to t->work.splat_gradient, after a forward pass that was not for
+ * the image only. Returns 0, or -1 with t->message filled. */
 int ted4_trainer_render_backward(ted4_trainer *t, const ted4_view *v, const ted4_splats *s);
 
 /* Renders the current model into t->work.image, planar. *v and centre receive view and camera

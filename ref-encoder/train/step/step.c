@@ -79,7 +79,7 @@ static int forward(ted4_trainer *t, pass *p)
     announce(t);
     p->pic = &t->data->pictures[item];
     p->corrected = ted4_trainer_corrected(t, p->pic);
-    bad = ted4_trainer_render(t, p->pic, 1, &p->v, &p->in, &p->s) != 0;
+    bad = ted4_trainer_render(t, p->pic, TED4_PASS_STEP, &p->v, &p->in, &p->s) != 0;
     if (!bad) {
         p->loss = ted4_trainer_loss(t, p->pic, truth, p->map, &p->l1, &p->ssim);
         bad = ted4_monitor_loss(t, p->loss) != 0;
