@@ -63,9 +63,8 @@ everywhere() {
             rm -rf "$work/rows"
             cp -r "$2" "$work/rows"
             echo 0 >"$out/count"
-            KILL_AT=$at KILL_WHEN=$when setsid --wait sh -c '
-                PATH=$0/bin:$PATH TED4_BUILD=$0/build TED4_RESULTS=$0 TED4_TABLE=$0/table.txt \
-                    TED4_DATA=$0/data exec bench/sweep.sh "$@"' "$out" $3 >"$out/said" 2>&1
+            ( use_stand_ins; KILL_AT=$at KILL_WHEN=$when exec setsid --wait bench/sweep.sh $3 ) \
+                >"$out/said" 2>&1
             case $? in 137) kills=$((kills + 1)) ;; *) ended=1 ;; esac
             whole "$2" || wrong="killed $when call $at: $(cat "$out/sweep.csv")"
             stand_ins $3 >"$out/said" 2>&1

@@ -104,10 +104,10 @@ undisturbed() {
         fail "$way" "$(tail -n 20 "$out/$way.said")"
 }
 
-# disturbed WAY JOB IDLE DRIVER...: a training, a job (a process that fits JOB), the driver and the
-# merge are killed; IDLE waits until nothing is left of what the killed driver started.
+# disturbed WAY JOB GO_ON DRIVER...: a training, a job (a process that fits JOB), the driver and the
+# merge are killed. GO_ON WAY DRIVER... waits for what the killed driver left, and kills the merge.
 disturbed() {
-    way=$1 job=$2 idle=$3
+    way=$1 job=$2 go_on=$3
     shift 3
     began=$(date +%s)
     in_way "$way" setsid --wait "$@" & driver=$!
@@ -117,11 +117,7 @@ disturbed() {
         '[ "$(count_rows $way)" -ge 6 ]'
     wait $driver
     cp -r "$out/$way/work/rows" "$out/$way.before"
-    $idle "$way"
-    in_way "$way" setsid --wait "$@" & driver=$!
-    kill_when "$way" merge 'sweep\.sh --merge' '[ "$(count_merged $way)" -ge 2 ]'
-    wait $driver
-    $idle "$way"
+    $go_on "$way" "$@"
     in_way "$way" "$@" && same "$way" "$way" "$(since "$began")" ||
         fail "$way" "$(tail -n 20 "$out/$way.said")"
 }
@@ -129,11 +125,20 @@ disturbed() {
 # Until no process of that way is left.
 no_process() { while [ -n "$(pids "$1" 'sweep|ted4')" ]; do sleep 0.5; done; }
 
+kill_merge() { kill_when "$1" merge 'sweep\.sh --merge' '[ "$(count_merged $way)" -ge 2 ]'; }
+
 # ---- GNU parallel ----
 
 if command -v parallel >/dev/null && parallel --version 2>&1 | grep -q '^GNU parallel'; then
     undisturbed parallel bench/cluster/parallel.sh sweep --jobs 2
-    disturbed parallel_killed '^[^ ]*sh bench/sweep\.sh .*--only' no_process \
+    # A second call merges what the first one left.
+    go_on_parallel() {
+        no_process "$1"
+        in_way "$@" & driver=$!
+        kill_merge "$1"
+        wait $driver
+    }
+    disturbed parallel_killed '^[^ ]*sh bench/sweep\.sh .*--only' go_on_parallel \
         bench/cluster/parallel.sh sweep --jobs 2
 else
     skip parallel "there is no GNU parallel (make deps-cluster)"
@@ -141,14 +146,19 @@ fi
 
 # ---- Slurm, of this machine alone ----
 
-no_job() { while [ -n "$(squeue -h)" ]; do sleep 1; done; no_process "$1"; }
+# The jobs go on without their driver, the merge last.
+go_on_slurm() {
+    kill_merge "$1"
+    while [ -n "$(squeue -h)" ]; do sleep 1; done
+    no_process "$1"
+}
 
 if said=$(bench/cluster/one-node.sh start "$out/slurm" 2 2>"$out/slurm.said"); then
     trap 'bench/cluster/one-node.sh stop "$out/slurm"; rm -rf "$out"' EXIT
     set -a; eval "$said"; set +a
     undisturbed slurm bench/cluster/slurm.sh sweep --tasks 5 --wait
-    disturbed slurm_killed 'slurm_script|task\.sh' no_job bench/cluster/slurm.sh sweep --tasks 5 \
-        --wait
+    disturbed slurm_killed 'slurm_script|task\.sh' go_on_slurm bench/cluster/slurm.sh sweep \
+        --tasks 5 --wait
 else
     skip slurm "Slurm does not run here: $(tail -n 1 "$out/slurm.said")"
 fi

@@ -35,7 +35,9 @@ echo 'echo "{\"budget\":[]}"' | stand_in build/ted4info
 for program in build/ted4scene build/bench/rate_check build/bench/spans build/bench/to_jpeg; do
     echo 'echo "{}"' | stand_in $program
 done
-stand_ins() {
-    PATH=$out/bin:$PATH TED4_BUILD=$out/build TED4_RESULTS=$out TED4_TABLE=$out/table.txt \
-        TED4_DATA=$out/data bench/sweep.sh "$@"
+use_stand_ins() {
+    PATH=$out/bin:$PATH TED4_BUILD=$out/build TED4_RESULTS=$out TED4_TABLE=$out/table.txt
+    TED4_DATA=$out/data
+    export PATH TED4_BUILD TED4_RESULTS TED4_TABLE TED4_DATA
 }
+stand_ins() { ( use_stand_ins; exec bench/sweep.sh "$@" ); }

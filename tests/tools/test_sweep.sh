@@ -30,4 +30,17 @@ stand_ins --row-files >"$out/said" 2>&1
 stand_ins --merge >"$out/said" 2>&1
 cmp -s "$out/sweep.csv" "$out/whole.csv" && [ -z "$(ls "$out/build/sweep/rows")" ] && ok merge ||
     fail merge "$(cat "$out/said")"
+
+# A script that is terminated ends after its training, which has a checkpoint to write.
+stand_in build/ted4enc <<END
+trap 'sleep 1; echo saved >"$out/checkpoint"; exit 130' TERM
+echo >"$out/started"
+for i in \$(seq 300); do sleep 0.1; done
+END
+rm -rf "$out/sweep.csv" "$out/build/sweep"
+( use_stand_ins; exec bench/sweep.sh --jobs 1 ) >"$out/said" 2>&1 & script=$!
+for i in $(seq 200); do [ -e "$out/started" ] && break; sleep 0.1; done
+kill $script
+wait $script
+[ -e "$out/checkpoint" ] && ok terminated || fail terminated "$(cat "$out/said")"
 exit $bad
