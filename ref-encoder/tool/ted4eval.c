@@ -14,6 +14,7 @@
 
 #include <jansson.h>
 
+#include "align.h"
 #include "belongs.h"
 #include "camera_view.h"
 #include "data/dataset.h"
@@ -38,6 +39,7 @@ enum {
     OPT_IMAGES,
     OPT_SHEET,
     OPT_THREADS,
+    OPT_ALIGN,
     OPT_ANYWAY,
     OPT_FORCE,
     OPT_JSON,
@@ -65,6 +67,8 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
     [OPT_SHEET] = { 0, "sheet", "FILE.png",
                     "one picture: truth, ours, error of up to four cameras, at other times" },
     [OPT_THREADS] = { 'j', "threads", "N", "threads; 0: all cores. Default 0" },
+    [OPT_ALIGN] = { 0, "align", NULL,
+                    "also fit each picture's pose on half of it, judge the other" },
     [OPT_ANYWAY] = { 0, "anyway", NULL, "compare also where the file cannot be of this scene" },
     [OPT_FORCE] = { 'f', "force", NULL, "overwrite pictures" },
     [OPT_JSON] = { 0, "json", NULL, "result as one JSON object" },
@@ -94,12 +98,13 @@ typedef struct {
     const char *hold_out[MAX_HOLD_OUT];
     size_t n_hold_out;
     int premultiplied;
-    int want_test, downscale, max_frames, threads, anyway, force, json, quiet, verbose;
+    int want_test, downscale, max_frames, threads, align, anyway, force, json, quiet, verbose;
 } settings;
 
 /* Sums over pictures; results are divided by views. */
 typedef struct {
     double psnr, ssim, ssim2, ms_ssim, l1, render_s, decode_ms;
+    double given, aligned; /* PSNR of the half that --align judges, before and after the fit */
     size_t views, bytes;
 } totals;
 
@@ -178,11 +183,10 @@ static int set_option(settings *s, int option, const char *value)
     case OPT_THREADS: return set_number("threads", value, 0, TED4_MAX_THREADS, &s->threads);
     default: break;
     }
-    int *const flag[N_OPTIONS] = { [OPT_ANYWAY] = &s->anyway,
-                                   [OPT_FORCE] = &s->force,
-                                   [OPT_JSON] = &s->json,
-                                   [OPT_QUIET] = &s->quiet,
-                                   [OPT_VERBOSE] = &s->verbose };
+    int *const flag[N_OPTIONS] = {
+        [OPT_ALIGN] = &s->align, [OPT_ANYWAY] = &s->anyway, [OPT_FORCE] = &s->force,
+        [OPT_JSON] = &s->json,   [OPT_QUIET] = &s->quiet,   [OPT_VERBOSE] = &s->verbose
+    };
 
     *flag[option] = 1;
     return 0;
@@ -355,6 +359,64 @@ static int take_picture(session *s, size_t i, const uint8_t *truth, const uint8_
     return code;
 }
 
+/* A picture whose pose is fitted. */
+typedef struct {
+    session *s;
+    uint32_t frame;
+    ted4_status status;
+} aligning;
+
+static int draw(void *user, const ted4_camera *camera, uint8_t *rgb)
+{
+    aligning *const a = user;
+    const ted4_view view = ted4_view_of_camera(camera);
+    const uint32_t last = a->s->data.n_frames > 1 ? a->s->data.n_frames - 1 : 1;
+
+    a->status = ted4_render_query(a->s->viewer, a->s->recon, &a->s->info, a->frame, last, &view,
+                                  &a->s->parallel, rgb);
+    return a->status != TED4_OK;
+}
+
+/* Returns how far the middle of the file's scene is from a camera, but at least its size. */
+static double distance_to(const ted4_info *info, const ted4_camera *c)
+{
+    double square = 0;
+
+    for (int i = 0; i < 3; i++) {
+        double x = c->t[i];
+
+        for (int j = 0; j < 3; j++)
+            x += c->R[3 * i + j] * (double)info->origin[j];
+        square += x * x;
+    }
+    return fmax(sqrt(square), ldexp(1.0, info->exponent));
+}
+
+/* Fits the pose of a picture (align.h), which changes neither the file nor any other picture, and
+ * judges the other half of it. ours: room for a picture; holds the one from the given pose. */
+static int align_picture(session *s, const ted4_picture *p, const uint8_t *truth, uint8_t *ours)
+{
+    const ted4_camera *const c = &p->camera;
+    aligning a = { s, p->frame, TED4_E_LIMIT_MEMORY };
+    const double given = ted4_align_psnr(truth, ours, c->width, c->height);
+    ted4_camera fitted;
+
+    if (ted4_align(c, distance_to(&s->info, c), truth, draw, &a, &fitted) != 0 ||
+        draw(&a, &fitted, ours) != 0) {
+        ted4_teller_clear(&teller);
+        return ted4_report("ted4eval", s->set->input, &(ted4_error) { a.status, 0 }, s->set->json);
+    }
+
+    const double aligned = ted4_align_psnr(truth, ours, c->width, c->height);
+
+    s->sum.given += given;
+    s->sum.aligned += aligned;
+    if (s->set->verbose)
+        fprintf(stderr, "%s frame %" PRIu32 ": half %.4f aligned %.4f\n", p->path, p->frame, given,
+                aligned);
+    return TED4_EXIT_FINE;
+}
+
 static int evaluate_picture(session *s, size_t i)
 {
     const ted4_picture *const p = &s->data.pictures[i];
@@ -379,6 +441,8 @@ static int evaluate_picture(session *s, size_t i)
         code = failed(p->path, m.text);
     } else {
         code = take_picture(s, i, truth, ours);
+        if (code == TED4_EXIT_FINE && s->set->align)
+            code = align_picture(s, p, truth, ours);
         ted4_dataset_release(&s->data, i);
     }
     free(ours);
@@ -403,6 +467,8 @@ static void print_result(const session *s)
                "%zu\ndecode     %.2f ms\nrender     %.2f fps\nviews      %zu\n",
                t->psnr / n, t->ssim / n, t->ssim2 / n, t->ms_ssim / n, t->bytes, t->decode_ms,
                n / t->render_s, t->views);
+        if (s->set->align)
+            printf("half       %.4f dB\naligned    %.4f dB\n", t->given / n, t->aligned / n);
         return;
     }
     json_t *const o = json_pack(
@@ -413,6 +479,10 @@ static void print_result(const session *s)
         "split", s->set->want_test ? "test" : "train", "frames", (json_int_t)s->info.frames,
         "anchors", (json_int_t)s->info.n_anchors, "gaussians", (json_int_t)s->info.n_gaussians);
 
+    if (s->set->align) {
+        json_object_set_new(o, "psnr_half", number(t->given / n));
+        json_object_set_new(o, "psnr_aligned", number(t->aligned / n));
+    }
     json_dumpf(o, stdout, JSON_COMPACT | JSON_REAL_PRECISION(6));
     putchar('\n');
     json_decref(o);

@@ -349,6 +349,19 @@ static double result(const char *key)
     return value;
 }
 
+/* No pose explains that pictures are brighter: the fit finds next to nothing. psnr: of the pictures
+ * without it. */
+static void check_aligned(double psnr)
+{
+    assert_int_equal(run("ted4eval v1.ted4 scene --anyway --json --align"), 0);
+    assert_true(result("psnr") == psnr);
+    assert_true(fabs(result("psnr_half") - psnr) < 0.01);
+    assert_true(result("psnr_aligned") > psnr - 0.5);
+    assert_int_equal(run("ted4eval v1.ted4 scene --anyway --align"), 0);
+    assert_non_null(strstr(out, "half       "));
+    assert_non_null(strstr(out, "aligned    "));
+}
+
 /* Pictures that differ from what the file shows by one step everywhere. */
 static void test_eval(void **state)
 {
@@ -389,6 +402,8 @@ static void test_eval(void **state)
     assert_true(result("views") == VIEWS);
     assert_true(result("decode_ms") > 0.0);
     assert_true(result("render_fps") > 0.0);
+    assert_true(result("psnr_aligned") < 0);
+    check_aligned(result("psnr"));
     path_of(path, "sheet.png");
     assert_int_equal(ted4_image_probe(path, &sheet, &m), 0);
     assert_int_equal(sheet.width, 3 * WIDTH);
