@@ -25,7 +25,7 @@
  * or two of other work on the machine hardly changes it. */
 #define MEMORY      1000.0
 /* The time of a step counts at most as this multiple of its expected time: the rest was spent on
- * work that does not recur, such as multi-view seeding. */
+ * work that does not recur, such as seeding. */
 #define UNUSUAL     15.0
 /* Observations before the first estimate is printed; number of those that are ignored at first. */
 enum { READY = 100, WARMING = 5 };
@@ -42,7 +42,7 @@ static double weight(const ted4_work *w, double anchors)
     return (anchors / fmax(w->most_anchors, 1.0) + FIXED) / (1.0 + FIXED);
 }
 
-/* Expected number of anchors after growth and before multi-view seeding. */
+/* Expected number of anchors after growth and before seeding. */
 static double grown(const ted4_work *w)
 {
     const double cap = (1.0 - w->mv_seed_share) * w->most_anchors;
@@ -54,7 +54,7 @@ static double grown(const ted4_work *w)
     return fmax(w->anchors, fmin(cap, STILL_GROWS * w->anchors));
 }
 
-/* Expected number of anchors from multi-view seeding on. */
+/* Expected number of anchors from seeding on. */
 static double after_mv_seed(const ted4_work *w)
 {
     return w->step > w->mv_seed_at * w->stage1

@@ -11,9 +11,9 @@
 /* The schedule of a run, and its current state. */
 typedef struct {
     double stage1, stage2; /* numbers of steps */
-    /* When growth begins, and when multi-view seeding adds anchors, as shares of stage 1. */
+    /* When growth begins, and when seeding adds anchors, as shares of stage 1. */
     double first_growth, mv_seed_at;
-    /* Share of most_anchors that is reserved for multi-view seeding; 0: it will not take place. */
+    /* Share of most_anchors that is reserved for seeding; 0: it will not take place. */
     double mv_seed_share;
     double most_anchors; /* the largest permitted number of anchors */
     /* Steps of each of the two branches of the time probe; 0: no probe is ahead or under way. */

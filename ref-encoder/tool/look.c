@@ -46,7 +46,7 @@ static double trials_now(const ted4_trainer *t)
     return t->search.decided == TED4_DECIDED_MODEL ? search_steps(t) : t->onlooker.budget;
 }
 
-/* Steps between two queries of whether multi-view seeding will take place; a query has to examine
+/* Steps between two queries of whether seeding will take place; a query has to examine
  * all pictures. */
 enum { ASK_EVERY = 500 };
 

@@ -18,7 +18,7 @@ typedef struct {
     ted4_teller *teller;    /* borrowed */
     ted4_facts facts;       /* the facts last given to the teller */
     ted4_estimate estimate;
-    /* Share of the anchors that is reserved for multi-view seeding, by the last query of the
+    /* Share of the anchors that is reserved for seeding, by the last query of the
      * schedule; negative: there was none. */
     double mv_seed_share;
     int estimated;  /* 1: the estimated duration of the run has been printed */

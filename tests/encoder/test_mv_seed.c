@@ -43,7 +43,7 @@ static void test_search(void **state)
         const size_t first = list.n;
         size_t near = 0;
 
-        assert_int_equal(ted4_mv_seed_search(&t, f, 0, &list), 0);
+        assert_int_equal(ted4_mv_seed_search(&t, f, &list), 0);
         for (size_t i = first; i < list.n; i++) {
             const double r = ball_radii(&t, list.item[i].point, SPEED, (double)f / (FRAMES - 1));
 
@@ -76,7 +76,7 @@ static void test_long(void **state)
     ball_train(&t, STEPS);
     balls.n_frames = 20000;
     for (uint32_t f = 0; f < 3; f++) {
-        assert_int_equal(ted4_mv_seed_search(&t, f, 0, &list), 0);
+        assert_int_equal(ted4_mv_seed_search(&t, f, &list), 0);
         assert_int_equal(list.n, f + 1);
     }
     free(list.item);
@@ -188,7 +188,7 @@ static void test_parents(void **state)
     ball_train(&t, STEPS);
     read_parents(&t, &p);
     for (uint32_t f = 0; f < FRAMES; f++)
-        assert_int_equal(ted4_mv_seed_search(&t, f, 0, &list), 0);
+        assert_int_equal(ted4_mv_seed_search(&t, f, &list), 0);
     assert_int_equal(ted4_mv_seed(&t), 0);
     for (size_t i = 0; i < t.anchors.n; i++) {
         const ted4_place *place = ball_place_of(&t, i, &list);
@@ -221,14 +221,14 @@ static void test_impossible(void **state)
     (void)state;
     o.activation = 0;
     ball_begin(&t, &o, &balls, NULL);
-    assert_int_equal(ted4_mv_seed_reach(&t), -1);
+    assert_false(ted4_mv_seed_applies(&t));
     assert_int_equal(t.anchors.n + ted4_growth_allowance(&t), 320);
     ted4_trainer_finish(&t);
     o.activation = 1;
     for (size_t i = 0; i < balls.n_pictures; i++) /* two cameras per frame */
         balls.pictures[i].is_test = balls.pictures[i].camera_id >= 2;
     ball_begin(&t, &o, &balls, NULL);
-    assert_int_equal(ted4_mv_seed_reach(&t), -1);
+    assert_false(ted4_mv_seed_applies(&t));
     ted4_trainer_finish(&t);
     for (size_t i = 0; i < balls.n_pictures; i++)
         balls.pictures[i].is_test = 0;

@@ -1,6 +1,6 @@
 /* ball_missing.h - the moving scene of balls without the initial points of the blue ball, so that
  * only the pictures show it, and the number of new anchors that lie on it. For test_mv_seed.c and
- * test_alternating_cameras.c.
+ * test_sv_seed.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_BALL_MISSING_H
 #define TED4_BALL_MISSING_H

@@ -12,88 +12,12 @@
 #include "train/math/random.h"
 #include "photo_votes.h"
 #include "plane_sweep.h"
-#include "train/model/normalise.h"
-#include "train/state/anchor_appearance.h"
+#include "seed_anchor.h"
 
-int ted4_mv_seed_reach(const ted4_trainer *t)
+int ted4_mv_seed_applies(const ted4_trainer *t)
 {
-    return t->layout.first[TED4_TAU] < 0 || t->data->n_frames < 2 ? -1 : ted4_alternating_reach(t);
-}
-
-/* The current appearance of the anchors (ted4_anchor_appearance). */
-typedef struct {
-    float *rgb, *opacity; /* owned: [n][3], [n] */
-} appearance;
-
-/* Returns 0, or -1 with t->message filled. */
-static int measure_appearance(ted4_trainer *t, appearance *l)
-{
-    l->rgb = malloc(3 * t->anchors.n * sizeof *l->rgb);
-    l->opacity = malloc(t->anchors.n * sizeof *l->opacity);
-    if (l->rgb == NULL || l->opacity == NULL)
-        return ted4_trainer_fail(t, "no memory to look at anchors");
-    return ted4_anchor_appearance(t, l->opacity, l->rgb);
-}
-
-/* An anchor with less opacity than this is not chosen as a source of features. */
-#define OPAQUE 0.5f
-
-/* Finds, among the first n anchors, the one with the most similar colour and the nearest one. */
-static void find_parents(const ted4_trainer *t, const appearance *l, size_t n, const ted4_place *p,
-                         size_t *alike, size_t *near)
-{
-    float best_colour = INFINITY, best_place = INFINITY;
-
-    *alike = *near = 0;
-    for (size_t i = 0; i < n; i++) {
-        float colour = l->opacity[i] < OPAQUE ? 10.0f : 0.0f, place = 0;
-
-        for (int k = 0; k < 3; k++) {
-            const float c = l->rgb[3 * i + (size_t)k] - (float)p->colour[k] / 255.0f;
-            const float d = *ted4_anchor_value(&t->anchors, TED4_ROW_POSITION, i, k) - p->point[k];
-
-            colour += c * c;
-            place += d * d;
-        }
-        if (colour < best_colour) {
-            best_colour = colour;
-            *alike = i;
-        }
-        if (place < best_place) {
-            best_place = place;
-            *near = i;
-        }
-    }
-}
-
-/* Adds an anchor at a place. It takes its features from the anchor with the most similar colour,
- * and its motion from the nearest anchor. */
-static int add(ted4_trainer *t, const appearance *l, size_t n_old, const ted4_place *p,
-               const ted4_span *span)
-{
-    const ted4_layout *y = &t->layout;
-    ted4_anchors *a = &t->anchors;
-    const size_t i = a->n;
-    size_t alike, near;
-
-    if (ted4_anchors_resize(a, i + 1) != 0)
-        return ted4_trainer_fail(t, "no memory for %zu anchors", i + 1);
-    find_parents(t, l, n_old, p, &alike, &near);
-    for (int r = 0; r < y->n_channels; r++)
-        *ted4_anchor_value(a, TED4_ROW_VALUE, i, r) =
-            *ted4_anchor_value(a, TED4_ROW_VALUE, near, r);
-    for (int r = 0; r < y->head.feature_dim; r++)
-        *ted4_anchor_value(a, TED4_ROW_VALUE, i, y->first[TED4_FEATURE] + r) =
-            *ted4_anchor_value(a, TED4_ROW_VALUE, alike, y->first[TED4_FEATURE] + r);
-    for (int j = 0; j < 3; j++)
-        *ted4_anchor_value(a, TED4_ROW_POSITION, i, j) = p->point[j];
-    for (int j = 0; j < 3 * y->head.n_offsets; j++)
-        *ted4_anchor_value(a, TED4_ROW_VALUE, i, y->first[TED4_OFFSET] + j) = 0.0f;
-    for (int j = 0; j < 6; j++)
-        *ted4_anchor_value(a, TED4_ROW_VALUE, i, y->first[TED4_SCALING] + j) =
-            ted4_math_log2f(p->size);
-    ted4_span_set(t, i, span);
-    return 0;
+    return t->layout.first[TED4_TAU] >= 0 && t->data->n_frames >= 2 &&
+           ted4_most_cameras(t->data) >= TED4_CAMERAS_NEEDED;
 }
 
 /* Marks the voxel of a place in the frames of its span. Returns 0 if it was already marked in its
@@ -112,7 +36,7 @@ static int mark(ted4_voxel_set *taken, const ted4_place *p, const ted4_span *spa
 }
 
 static int plant(ted4_trainer *t, const ted4_places *list, const ted4_photo_votes *s,
-                 const appearance *l)
+                 const ted4_seed_parents *l)
 {
     const size_t n_old = t->anchors.n, most = (size_t)t->opt.max_anchors;
     const size_t allowance = n_old < most ? most - n_old : 0;
@@ -127,7 +51,7 @@ static int plant(ted4_trainer *t, const ted4_places *list, const ted4_photo_vote
         ted4_span span;
 
         if (ted4_photo_votes_span(s, i, p->frame, &span) && mark(&taken, p, &span))
-            bad = add(t, l, n_old, p, &span) != 0;
+            bad = ted4_seed_add(t, l, p, &span) != 0;
     }
     ted4_voxel_set_finish(&taken);
     return bad ? -1 : 0;
@@ -155,27 +79,23 @@ int ted4_mv_seed(ted4_trainer *t)
 {
     ted4_places list = { 0 };
     ted4_photo_votes s = { 0 };
-    appearance l = { 0 };
+    ted4_seed_parents l = { 0 };
     float *point = NULL;
     uint8_t *colour = NULL;
-    const int reach = ted4_mv_seed_reach(t);
     int bad = 0;
 
-    if (reach < 0)
-        return 0;
     for (uint32_t f = 0; !bad && f < t->data->n_frames; f++)
-        bad = ted4_mv_seed_search(t, f, (uint32_t)reach, &list) != 0;
+        bad = ted4_mv_seed_search(t, f, &list) != 0;
     if (!bad && arrange(&list, ted4_mv_seed_capacity(t->data->n_frames), &point, &colour) != 0)
         bad = ted4_trainer_fail(t, "no memory for new anchors");
-    bad = bad || ted4_photo_votes_count(&s, t, point, colour, list.n, (uint32_t)reach) != 0 ||
-          measure_appearance(t, &l) != 0 || plant(t, &list, &s, &l) != 0;
+    bad = bad || ted4_photo_votes_count(&s, t, point, colour, list.n) != 0 ||
+          ted4_seed_parents_measure(t, &l) != 0 || plant(t, &list, &s, &l) != 0;
     if (!bad && ted4_anchors_sort(&t->anchors) != 0)
         bad = ted4_trainer_fail(t, "no memory to sort anchors");
     ted4_photo_votes_free(&s);
     free(list.item);
     free(point);
     free(colour);
-    free(l.rgb);
-    free(l.opacity);
+    ted4_seed_parents_free(&l);
     return bad ? -1 : 0;
 }

@@ -3,18 +3,18 @@
  * without an initial point never gets an anchor: its error acts on the background, which is correct
  * in all other frames. Candidate places are found by plane sweeping: for each pixel with a large
  * error, depths along its ray are tried, and other cameras of the frame that see the point must
- * show the same colour, also with a large error. If cameras alternate, those of neighbouring frames
- * are used as well (alternating_cameras.h). This is not in the paper. It needs activation, and at
- * least three training cameras per frame or within its reach. Depends on trainer.h, photo_votes.h.
+ * show the same colour, also with a large error. This is not in the paper.
+ * If no frame has three training cameras, single-view seeding acts instead (sv_seed.h). Depends on
+ * trainer.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_MV_SEED_H
 #define TED4_MV_SEED_H
 
 #include "train/state/trainer.h"
 
-/* Returns how many neighbouring frames on either side are searched together with a frame
- * (ted4_alternating_reach), or -1 if there is no activation or there are too few cameras. */
-int ted4_mv_seed_reach(const ted4_trainer *t);
+/* Returns whether multi-view seeding applies to the scene: there is activation, and some frame has
+ * TED4_CAMERAS_NEEDED training pictures (photo_votes.h). */
+int ted4_mv_seed_applies(const ted4_trainer *t);
 
 /* Searches all frames and adds anchors, most reliable places first, until max_anchors is reached.
  * Each new anchor is active in the frames in which its colour is seen at its place, and takes the

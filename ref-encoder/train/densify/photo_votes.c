@@ -22,6 +22,20 @@
 #define CLEARLY_GONE  0.25f
 #define GONE_SHARE    0.25f
 
+uint32_t ted4_most_cameras(const ted4_dataset *d)
+{
+    uint32_t *cameras = calloc(d->n_frames, sizeof *cameras), most = 0;
+
+    for (size_t i = 0; cameras != NULL && i < d->n_pictures; i++) {
+        const ted4_picture *p = &d->pictures[i];
+
+        if (!p->is_test && ++cameras[p->frame] > most)
+            most = cameras[p->frame];
+    }
+    free(cameras);
+    return most;
+}
+
 typedef struct {
     ted4_photo_votes *s;
     const uint8_t *pixels;
@@ -75,42 +89,8 @@ static int match_pictures(ted4_photo_votes *s, ted4_trainer *t)
     return 0;
 }
 
-/* count[n_frames][n]: each element becomes the sum over the reach frames before and after its own.
- * column: room for n_frames elements. */
-static void widen(uint16_t *count, size_t n, uint32_t n_frames, uint32_t reach, uint16_t *column)
-{
-    for (size_t i = 0; i < n; i++) {
-        uint32_t sum = 0;
-
-        for (uint32_t f = 0; f < n_frames; f++)
-            column[f] = count[f * n + i];
-        for (uint32_t f = 0; f < reach && f < n_frames; f++)
-            sum += column[f];
-        for (uint32_t f = 0; f < n_frames; f++) {
-            sum += f + reach < n_frames ? column[f + reach] : 0;
-            sum -= f > reach ? column[f - reach - 1] : 0;
-            count[f * n + i] = (uint16_t)(sum < UINT16_MAX ? sum : UINT16_MAX);
-        }
-    }
-}
-
-/* Returns 0, or -1 if memory ran out. */
-static int widen_counts(ted4_photo_votes *s, uint32_t reach)
-{
-    uint16_t *column = reach > 0 ? malloc(s->n_frames * sizeof *column) : NULL;
-
-    if (reach > 0 && column == NULL)
-        return -1;
-    if (reach > 0) {
-        widen(s->hits, s->n, s->n_frames, reach, column);
-        widen(s->seen, s->n, s->n_frames, reach, column);
-    }
-    free(column);
-    return 0;
-}
-
 int ted4_photo_votes_count(ted4_photo_votes *s, ted4_trainer *t, const float *point,
-                           const uint8_t *colour, size_t n, uint32_t reach)
+                           const uint8_t *colour, size_t n)
 {
     memset(s, 0, sizeof *s);
     s->point = point;
@@ -121,11 +101,7 @@ int ted4_photo_votes_count(ted4_photo_votes *s, ted4_trainer *t, const float *po
     s->seen = calloc(s->n_frames * n + 1, sizeof *s->seen);
     if (s->hits == NULL || s->seen == NULL)
         return ted4_trainer_fail(t, "no memory to look for what comes and goes");
-    if (match_pictures(s, t) != 0)
-        return -1;
-    return widen_counts(s, reach) != 0
-               ? ted4_trainer_fail(t, "no memory to look for what comes and goes")
-               : 0;
+    return match_pictures(s, t);
 }
 
 void ted4_photo_votes_free(ted4_photo_votes *s)

@@ -1,11 +1,16 @@
 /* photo_votes.h - photo votes: in which frames a given colour is seen at a given point. They tell
- * short-lived content from permanent content. Depends on trainer.h, alternating_cameras.h.
+ * short-lived content from permanent content. Depends on trainer.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_PHOTO_VOTES_H
 #define TED4_PHOTO_VOTES_H
 
 #include "train/state/trainer.h"
-#include "alternating_cameras.h"
+
+/* Least number of cameras per frame. With fewer cameras, chance matches decide. */
+enum { TED4_CAMERAS_NEEDED = 3 };
+
+/* Returns the largest number of training pictures of one frame, or 0 if memory ran out. */
+uint32_t ted4_most_cameras(const ted4_dataset *d);
 
 /* Two colours agree if they differ by less than this many steps of 255, averaged over the
  * channels. */
@@ -51,11 +56,10 @@ typedef struct {
                               observe the point */
 } ted4_photo_votes;
 
-/* Counts the votes of all training pictures. A picture also counts for the reach frames before and
- * after its own (alternating_cameras.h). Returns 0, or -1 with t->message filled; free s in either
- * case. */
+/* Counts the votes of all training pictures. Returns 0, or -1 with t->message filled; free s in
+ * either case. */
 int ted4_photo_votes_count(ted4_photo_votes *s, ted4_trainer *t, const float *point,
-                           const uint8_t *colour, size_t n, uint32_t reach);
+                           const uint8_t *colour, size_t n);
 void ted4_photo_votes_free(ted4_photo_votes *s);
 
 /* The frames from..to in which something exists. before and after: distance in frames to the

@@ -7,35 +7,17 @@
 #include <string.h>
 
 #include "train/math/voxel_set.h"
-#include "math/compare.h"
 #include "math/elementary.h"
 #include "photo_votes.h"
-#include "train/model/normalise.h"
-#include "train/state/picture.h"
+#include "error_view.h"
 
-/* A pixel of a camera misses something if its error, averaged over the channels, is at least this,
- * of 255. A pixel that confirms it needs at least half of that. */
-#define MISSING      24
-/* Distance of the tested pixels, as a share of the picture's width. */
-#define SPACING      (1.0f / 120.0f)
 /* Distance of consecutive depths: at most so many pixels in any other picture. */
 #define PIXELS_APART 1.5f
 enum { FEWEST_DEPTHS = 16, MOST_DEPTHS = 512 };
-/* The tested depths begin and end at these multiples of the range of depths that contains 96 % of
- * the anchors in a view. */
-#define NEARER   0.5f
-#define FARTHER  1.2f
-#define OUTLIERS 0.02f
-/* One picture of the frame, or of the neighbouring frames. */
+/* One picture of the frame. */
 typedef struct {
-    ted4_view view;
-    float centre[3];
-    float nearest, farthest; /* range of the tested depths */
-    int depths;
-    int is_own; /* 1 if the picture belongs to the frame itself */
-    int helps;  /* 1 if it can confirm what the searching picture misses: another camera, far
-                 * enough away */
-    uint8_t *rgb, *error; /* owned: [pixels][3], [pixels] */
+    ted4_error_view at;
+    int depths; /* number of tested depths */
 } sweep_view;
 
 typedef struct {
@@ -48,7 +30,7 @@ typedef struct {
 
 /* Returns approximately by how many pixels a point at inverse depth 1/z moves in the other picture
  * when 1/z changes by 1. */
-static float parallax(const sweep_view *a, const sweep_view *b)
+static float parallax(const ted4_error_view *a, const ted4_error_view *b)
 {
     float square = 0;
 
@@ -62,9 +44,9 @@ static void count_depths(sweep_view *views, size_t n, size_t self)
     float farthest = 0;
 
     for (size_t i = 0; i < n; i++)
-        farthest = fmaxf(farthest, parallax(&views[self], &views[i]));
+        farthest = fmaxf(farthest, parallax(&views[self].at, &views[i].at));
 
-    const float range = 1.0f / views[self].nearest - 1.0f / views[self].farthest;
+    const float range = 1.0f / views[self].at.nearest - 1.0f / views[self].at.farthest;
     const float wanted = ceilf(range * farthest / PIXELS_APART);
 
     views[self].depths = (int)fmaxf(FEWEST_DEPTHS, fminf(wanted, MOST_DEPTHS));
@@ -72,52 +54,44 @@ static void count_depths(sweep_view *views, size_t n, size_t self)
 
 /* Returns how well the other picture confirms the point, in (0, 1], or 0 if it does not.
  * *observed: whether the point lies in that picture. */
-static float confirm(const sweep_view *e, const float p[3], const uint8_t colour[3], int *observed)
+static float confirm(const ted4_error_view *e, const float p[3], const uint8_t colour[3],
+                     int *observed)
 {
     size_t pixel;
     float depth;
 
     *observed = ted4_view_pixel(&e->view, p, &pixel, &depth);
-    if (!*observed || e->error[pixel] < MISSING / 2 ||
+    if (!*observed || e->error[pixel] < TED4_MISSING / 2 ||
         !ted4_colour_agrees(e->rgb + 3 * pixel, colour))
         return 0.0f;
     return 1.0f -
            (float)ted4_colour_far(e->rgb + 3 * pixel, colour) / (3.0f * TED4_COLOUR_NEAR + 1.0f);
 }
 
-/* Computes the point at depth z on the ray through a pixel's centre. */
-static void point_at(const ted4_view *v, int column, int row, float z, float p[3])
-{
-    const float c[3] = { ((float)column + 0.5f - v->cx) / v->fx * z - v->t[0],
-                         ((float)row + 0.5f - v->cy) / v->fy * z - v->t[1], z - v->t[2] };
-
-    for (int k = 0; k < 3; k++)
-        p[k] = v->R[k] * c[0] + v->R[3 + k] * c[1] + v->R[6 + k] * c[2];
-}
-
 /* Finds the depth of a pixel that the other cameras confirm best. At least half of those that see
  * the point must confirm it. */
 static void sweep(const search_job *j, int column, int row, ted4_place *best)
 {
-    const sweep_view *own = &j->views[j->self];
+    const ted4_error_view *own = &j->views[j->self].at;
     const size_t pixel = (size_t)row * (size_t)own->view.width + (size_t)column;
     const uint8_t *colour = own->rgb + 3 * pixel;
+    const int depths = j->views[j->self].depths;
 
-    for (int k = 0; k < own->depths; k++) {
-        const float part = (float)k / (float)(own->depths - 1);
+    for (int k = 0; k < depths; k++) {
+        const float part = (float)k / (float)(depths - 1);
         const float z = 1.0f / ((1.0f - part) / own->nearest + part / own->farthest);
         float p[3], score = 0;
         int seen = 0, agree = 0;
 
-        point_at(&own->view, column, row, z, p);
+        ted4_view_point(&own->view, column, row, z, p);
         if (fabsf(p[0]) > 1.0f || fabsf(p[1]) > 1.0f || fabsf(p[2]) > 1.0f)
             continue;
         for (size_t i = 0; i < j->n; i++) {
             int observed;
 
-            if (!j->views[i].helps)
+            if (i == j->self)
                 continue;
-            const float s = confirm(&j->views[i], p, colour, &observed);
+            const float s = confirm(&j->views[i].at, p, colour, &observed);
 
             seen += observed;
             agree += s > 0;
@@ -136,7 +110,7 @@ static void sweep(const search_job *j, int column, int row, ted4_place *best)
 static void search_row(void *arg, size_t r)
 {
     const search_job *j = arg;
-    const sweep_view *own = &j->views[j->self];
+    const ted4_error_view *own = &j->views[j->self].at;
     const int row = (int)r * j->step + j->step / 2;
 
     for (int c = 0; c < j->columns; c++) {
@@ -145,70 +119,9 @@ static void search_row(void *arg, size_t r)
 
         memset(place, 0, sizeof *place);
         if (row < own->view.height && column < own->view.width &&
-            own->error[(size_t)row * (size_t)own->view.width + (size_t)column] >= MISSING)
+            own->error[(size_t)row * (size_t)own->view.width + (size_t)column] >= TED4_MISSING)
             sweep(j, column, row, place);
     }
-}
-
-/* Sets the range of depths from the anchors in the view. Returns 0, or -1 if memory ran out. */
-static int depth_range(const ted4_trainer *t, sweep_view *e)
-{
-    float *z = malloc((t->anchors.n + 1) * sizeof *z);
-    size_t n = 0;
-
-    if (z == NULL)
-        return -1;
-    for (size_t i = 0; i < t->anchors.n; i++) {
-        float p[3];
-        size_t pixel;
-
-        for (int k = 0; k < 3; k++)
-            p[k] = *ted4_anchor_value(&t->anchors, TED4_ROW_POSITION, i, k);
-        if (ted4_view_pixel(&e->view, p, &pixel, &z[n]))
-            n++;
-    }
-    qsort(z, n, sizeof *z, ted4_compare_floats);
-
-    const size_t out = (size_t)(OUTLIERS * (float)n);
-
-    e->nearest = n > 0 ? fmaxf(NEARER * z[out], e->view.near_z) : e->view.near_z;
-    e->farthest = n > 0 ? fmaxf(FARTHER * z[n - 1 - out], 2.0f * e->nearest) : 2.0f * e->nearest;
-    free(z);
-    return 0;
-}
-
-/* Loads a picture and renders the model's view of it, both in the scene's colours. */
-static int open_view(ted4_trainer *t, size_t item, sweep_view *e)
-{
-    const ted4_picture *pic = &t->data->pictures[item];
-    const uint8_t *truth = ted4_trainer_seen(t, item);
-
-    if (truth == NULL)
-        return -1;
-    if (ted4_trainer_draw(t, pic, &e->view, e->centre) != 0) {
-        ted4_dataset_release(t->data, item);
-        return -1;
-    }
-    const size_t n = (size_t)e->view.width * (size_t)e->view.height;
-
-    e->rgb = malloc(3 * n);
-    e->error = malloc(n);
-    for (size_t i = 0; e->rgb != NULL && e->error != NULL && i < n; i++) {
-        float sum = 0;
-
-        for (size_t k = 0; k < 3; k++) {
-            const float x = fminf(fmaxf(t->work.image[k * n + i], 0.0f), 1.0f);
-
-            sum += fabsf(255.0f * x - (float)truth[3 * i + k]);
-        }
-        e->error[i] = (uint8_t)(sum / 3.0f);
-    }
-    if (e->rgb != NULL)
-        memcpy(e->rgb, truth, 3 * n);
-    ted4_dataset_release(t->data, item);
-    if (e->rgb == NULL || e->error == NULL || depth_range(t, e) != 0)
-        return ted4_trainer_fail(t, "no memory to look for what is missing");
-    return 0;
 }
 
 static int put(ted4_places *l, const ted4_place *p)
@@ -226,22 +139,18 @@ static int put(ted4_places *l, const ted4_place *p)
     return 0;
 }
 
-/* Adds the places that one camera of the frame misses to the list. A picture of another frame does
- * not help if its camera is the same or too near, because a camera agrees with itself about any
- * depth. Returns 0, or -1 if memory ran out. */
+/* Adds the places that one camera of the frame misses to the list. Returns 0, or -1 if memory ran
+ * out. */
 static int search_view(const ted4_trainer *t, sweep_view *views, size_t n, size_t self,
                        uint32_t frame, ted4_places *list)
 {
-    const int width = views[self].view.width, height = views[self].view.height;
-    const int step = (int)fmaxf(1.0f, roundf(SPACING * (float)width));
+    const int width = views[self].at.view.width, height = views[self].at.view.height;
+    const int step = ted4_view_spacing(width);
     const size_t columns = (size_t)((width + step - 1) / step),
                  rows = (size_t)((height + step - 1) / step);
     search_job j = { views, n, self, step, malloc(rows * columns * sizeof *j.found), (int)columns };
     int bad = j.found == NULL;
 
-    for (size_t i = 0; i < n; i++)
-        views[i].helps = i != self && (views[i].is_own ||
-                                       ted4_cameras_apart(views[self].centre, views[i].centre));
     if (!bad)
         ted4_parallel_for(t->parallel, rows, search_row, &j);
     for (size_t i = 0; !bad && i < rows * columns; i++)
@@ -292,38 +201,29 @@ static int thin(ted4_places *l, size_t first, size_t most)
     return 0;
 }
 
-/* Returns whether this is a training picture of the frame or of a frame within reach. */
-static int is_near(const ted4_picture *p, uint32_t frame, uint32_t reach)
-{
-    return !p->is_test && p->frame + reach >= frame && p->frame <= frame + reach;
-}
-
-/* Opens the training pictures of a frame and its neighbours in views[], or only counts them if
- * views is NULL. Returns their number. *bad becomes 1, with t->message filled, on failure. */
-static size_t open_views(ted4_trainer *t, uint32_t frame, uint32_t reach, sweep_view *views,
-                         int *bad)
+/* Opens the training pictures of a frame in views[], or only counts them if views is NULL. Returns
+ * their number. *bad becomes 1, with t->message filled, on failure. */
+static size_t open_views(ted4_trainer *t, uint32_t frame, sweep_view *views, int *bad)
 {
     size_t n = 0;
 
     for (size_t i = 0; !*bad && i < t->data->n_pictures; i++) {
         const ted4_picture *p = &t->data->pictures[i];
 
-        if (!is_near(p, frame, reach))
+        if (p->is_test || p->frame != frame)
             continue;
-        if (views != NULL) {
-            views[n].is_own = p->frame == frame;
-            *bad = open_view(t, i, &views[n]) != 0;
-        }
+        if (views != NULL)
+            *bad = ted4_error_view_open(t, i, &views[n].at) != 0;
         n++;
     }
     return n;
 }
 
-int ted4_mv_seed_search(ted4_trainer *t, uint32_t frame, uint32_t reach, ted4_places *list)
+int ted4_mv_seed_search(ted4_trainer *t, uint32_t frame, ted4_places *list)
 {
     const size_t first = list->n;
     int bad = 0;
-    const size_t n = open_views(t, frame, reach, NULL, &bad);
+    const size_t n = open_views(t, frame, NULL, &bad);
 
     if (n < TED4_CAMERAS_NEEDED)
         return 0;
@@ -332,21 +232,19 @@ int ted4_mv_seed_search(ted4_trainer *t, uint32_t frame, uint32_t reach, ted4_pl
 
     if (views == NULL)
         return ted4_trainer_fail(t, "no memory to look for what is missing");
-    open_views(t, frame, reach, views, &bad);
+    open_views(t, frame, views, &bad);
     for (size_t i = 0; !bad && i < n; i++)
         count_depths(views, n, i);
     for (size_t i = 0; !bad && i < n; i++)
-        if (views[i].is_own && search_view(t, views, n, i, frame, list) != 0)
+        if (search_view(t, views, n, i, frame, list) != 0)
             bad = ted4_trainer_fail(t, "no memory to look for what is missing");
 
     const size_t share = ted4_mv_seed_capacity(t->data->n_frames) / t->data->n_frames;
 
     if (!bad && thin(list, first, share > 0 ? share : 1) != 0)
         bad = ted4_trainer_fail(t, "no memory to look for what is missing");
-    for (size_t i = 0; i < n; i++) {
-        free(views[i].rgb);
-        free(views[i].error);
-    }
+    for (size_t i = 0; i < n; i++)
+        ted4_error_view_close(&views[i].at);
     free(views);
     return bad ? -1 : 0;
 }

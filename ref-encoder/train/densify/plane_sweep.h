@@ -34,8 +34,8 @@ static inline size_t ted4_mv_seed_capacity(uint32_t n_frames)
 
 /* Appends the places that the model misses in one frame to the list, in a fixed order. It adds at
  * most one place per voxel of the place's size. In long sequences it keeps only the most reliable
- * ones, up to the frame's share of ted4_mv_seed_capacity, but at least one. reach: how many frames
- * before and after lend their pictures. Returns 0, or -1 with t->message filled. */
-int ted4_mv_seed_search(ted4_trainer *t, uint32_t frame, uint32_t reach, ted4_places *list);
+ * ones, up to the frame's share of ted4_mv_seed_capacity, but at least one. Returns 0, or -1 with
+ * t->message filled. */
+int ted4_mv_seed_search(ted4_trainer *t, uint32_t frame, ted4_places *list);
 
 #endif

@@ -62,7 +62,7 @@ int ted4_init_short_lived(ted4_trainer *t)
         for (size_t i = 0; i < t->data->n_points; i++)
             ted4_normalise_point(&t->layout.head, t->data->points + 3 * i, points + 3 * i);
         describe(t, points, place, colour);
-        bad = ted4_photo_votes_count(&s, t, place, colour, n, 0) != 0;
+        bad = ted4_photo_votes_count(&s, t, place, colour, n) != 0;
     }
     for (size_t i = 0; !bad && i < n; i++) {
         ted4_span span;

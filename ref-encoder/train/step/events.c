@@ -8,63 +8,76 @@
 #include "train/densify/densify.h"
 #include "train/densify/mv_seed.h"
 #include "train/densify/still_anchors.h"
+#include "train/densify/sv_seed.h"
 
 /* Share of stage 1 before the first adjustment of anchors. Statistics are gathered from step 0. */
 #define GROW_FROM 0.05
 
-/* Multi-view seeding takes place once static content is rendered well enough for everything else to
- * stand out, and before activation is learnt. With alternating cameras nothing else finds moving
+/* Seeding takes place once static content is rendered well enough for everything else to stand out,
+ * and before activation is learnt. If no frame has enough cameras, nothing else finds moving
  * things, so it precedes the probe. */
-#define MV_SEED_AT             0.3
-#define MV_SEED_AT_ALTERNATING 0.2
+#define SEED_AT             0.3
+#define SEED_AT_SINGLE_VIEW 0.2
 
 /* Share of stage 1 before still anchors are closed: most growth is over, and what is left of the
  * stage repairs what closing changed. */
 #define CLOSE_AT 0.65
 
-static uint64_t mv_seed_step(const ted4_trainer *t, int reach)
+static double seed_at(const ted4_trainer *t)
 {
-    return (uint64_t)((reach > 0 ? MV_SEED_AT_ALTERNATING : MV_SEED_AT) * (double)t->opt.stage1);
+    return ted4_sv_seed_applies(t) ? SEED_AT_SINGLE_VIEW : SEED_AT;
 }
 
-/* Returns whether multi-view seeding is still to come, so that anchors are reserved for it. */
-static int mv_seed_ahead(const ted4_trainer *t)
+static uint64_t seed_step(const ted4_trainer *t, double at)
 {
-    if (t->phase.stage2 || t->opt.sprouts <= 0 || t->iteration >= mv_seed_step(t, 0))
-        return 0;
-
-    const int reach = ted4_mv_seed_reach(t);
-
-    return reach >= 0 && t->iteration < mv_seed_step(t, reach);
+    return (uint64_t)(at * (double)t->opt.stage1);
 }
 
-static int mv_seed_due(const ted4_trainer *t)
+/* Returns whether the scene gets new anchors by one of the two kinds of seeding. */
+static int has_seeding(const ted4_trainer *t)
 {
-    if (t->phase.stage2 || t->opt.sprouts <= 0 ||
-        (t->iteration != mv_seed_step(t, 0) && t->iteration != mv_seed_step(t, 1)))
+    return t->opt.sprouts > 0 && (ted4_mv_seed_applies(t) || ted4_sv_seed_applies(t));
+}
+
+/* Returns whether seeding is still to come, so that anchors are reserved for it. */
+static int seeding_ahead(const ted4_trainer *t)
+{
+    return !t->phase.stage2 && t->iteration < seed_step(t, SEED_AT) && has_seeding(t) &&
+           t->iteration < seed_step(t, seed_at(t));
+}
+
+static int seeding_due(const ted4_trainer *t)
+{
+    if (t->phase.stage2 || (t->iteration != seed_step(t, SEED_AT) &&
+                            t->iteration != seed_step(t, SEED_AT_SINGLE_VIEW)))
         return 0;
-
-    const int reach = ted4_mv_seed_reach(t);
-
-    return reach >= 0 && t->iteration == mv_seed_step(t, reach);
+    return has_seeding(t) && t->iteration == seed_step(t, seed_at(t));
 }
 
 void ted4_schedule_growth(const ted4_trainer *t, double *from, double *mv_seed_at,
                           double *mv_seed_share)
 {
-    const int reach = ted4_mv_seed_reach(t);
-
     *from = GROW_FROM;
-    *mv_seed_at = reach > 0 ? MV_SEED_AT_ALTERNATING : MV_SEED_AT;
-    *mv_seed_share = reach >= 0 ? t->opt.sprouts : 0.0;
+    *mv_seed_at = seed_at(t);
+    *mv_seed_share = has_seeding(t) ? t->opt.sprouts : 0.0;
+}
+
+/* Returns by how many anchors the model may grow, up to a share of max_anchors. */
+static size_t allowance(const ted4_trainer *t, double share)
+{
+    const size_t most = (size_t)(share * (double)t->opt.max_anchors);
+
+    return t->anchors.n < most ? most - t->anchors.n : 0;
 }
 
 size_t ted4_growth_allowance(const ted4_trainer *t)
 {
-    const size_t most =
-        (size_t)((mv_seed_ahead(t) ? 1.0 - t->opt.sprouts : 1.0) * (double)t->opt.max_anchors);
+    return allowance(t, seeding_ahead(t) ? 1.0 - t->opt.sprouts : 1.0);
+}
 
-    return t->anchors.n < most ? most - t->anchors.n : 0;
+static int seed(ted4_trainer *t)
+{
+    return ted4_mv_seed_applies(t) ? ted4_mv_seed(t) : ted4_sv_seed(t, allowance(t, 1.0));
 }
 
 int ted4_integer_due(const ted4_trainer *t)
@@ -84,7 +97,7 @@ int ted4_schedule_event(ted4_trainer *t)
     if (t->layout.first[TED4_TAU] >= 0 && !t->phase.stage2 && i == ted4_activation_step(o) &&
         ted4_activation_begin(t) != 0)
         return -1;
-    if (mv_seed_due(t) && ted4_mv_seed(t) != 0)
+    if (seeding_due(t) && seed(t) != 0)
         return -1;
     if (!t->phase.stage2 && i > (uint64_t)(GROW_FROM * (double)stage1) &&
         i <= (uint64_t)(o->grow_until * (double)stage1) && i % (uint64_t)o->grow_every == 0 &&
