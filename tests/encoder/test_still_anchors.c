@@ -353,7 +353,7 @@ static void test_limits(void **state)
     assert_int_equal(ted4_snapshot_take(&t, &before), 0);
     for (int outside = 0; outside < 2; outside++) {
         assert_int_equal(ted4_snapshot_restore(&t, &before), 0);
-        put_at(&t, unseen, 0, -0.99f, 0.99f); /* below all views */
+        put_at(&t, unseen, 0, -0.9f, 0.9f); /* below all views */
         put_at(&t, away, 0, 0, outside ? -0.9999f : -0.9f);
         assert_int_equal(ted4_close_still_anchors(&t), 0);
         assert_true(t.closing.closed + 5 > t.closing.moving);
