@@ -22,7 +22,8 @@ LEVELS  = $(if $(filter x86_64,$(MACHINE)),base v3 v4,base)
 LEVELED = $(addprefix ref-decoder/render/,project.c blend.c) \
           $(addprefix ref-encoder/kernel/,dense_product.c dense_weights.c) \
           $(addprefix ref-encoder/train/,raster/blend_bwd.c raster/project_bwd.c \
-          splat/decode_fwd.c splat/decode_bwd.c splat/chain.c splat/effective_layer.c \
+          splat/decode_fwd.c splat/decode_bwd.c splat/view_colours.c splat/chain.c \
+          splat/effective_layer.c \
           rate/rate_fwd.c rate/rate_bwd.c rate/rate_row.c rate/rate_decoded.c \
           model/quantise_block.c math/adam_step.c loss/loss_passes.c loss/camera_colour_bands.c)
 # Rows are short and may lie anywhere: gcc would take one lane at a time until a store is aligned,

@@ -69,7 +69,8 @@ BETWEEN(PICTURE, pixels, ted4_dataset_pixels, (ted4_dataset * d, size_t i, ted4_
         (d, i, m))
 BETWEEN(SCHEDULE, int, ted4_trainer_check, (ted4_trainer * t, int anchors), (t, anchors))
 BETWEEN(SCHEDULE, int, ted4_schedule_event, (ted4_trainer * t), (t))
-BETWEEN(VISIBLE, int, ted4_visible_blocks_fill, (ted4_trainer * t, const ted4_view *v), (t, v))
+BETWEEN(VISIBLE, int, ted4_visible_blocks_of, (ted4_trainer * t, const ted4_view *v, size_t n),
+        (t, v, n))
 BETWEEN_VOID(GENERATE, ted4_generator_pack, (ted4_generator * g, const float *net), (g, net))
 BETWEEN(GENERATE, int, ted4_generate,
         (ted4_generator * g, const ted4_generate_input *in, const ted4_parallel *p,
@@ -104,7 +105,7 @@ BETWEEN_VOID(REGULARISE, ted4_update_bank, (ted4_trainer * t), (t))
 BETWEEN_VOID(REGULARISE, ted4_densify_gather,
              (ted4_trainer * t, const ted4_generate_input *in, const ted4_splats *s), (t, in, s))
 BETWEEN(RATE, int, ted4_update_rate, (ted4_trainer * t, uint64_t key), (t, key))
-BETWEEN_VOID(ADAM, ted4_update_parameters, (ted4_trainer * t), (t))
+BETWEEN_VOID(ADAM, ted4_update_parameters, (ted4_trainer * t, size_t n_views), (t, n_views))
 
 void parts_begin(void)
 {

@@ -230,7 +230,7 @@ static void test_masks(void **state)
             *ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, i, t.layout.temporal_logit) = logit[k];
         assert_int_equal(ted4_visible_blocks_fill(&t, NULL), 0);
         memset(t.visible_blocks.gradients, 0, t.visible_blocks.n * floats * sizeof(float));
-        ted4_update_parameters(&t);
+        ted4_update_parameters(&t, 1);
         for (size_t b = 0; b < t.visible_blocks.n; b++)
             for (size_t j = 0; j < TED4_LANES; j++) {
                 const double got =

@@ -78,7 +78,7 @@ static void check_update(ted4_trainer *t)
 
     const int ranges = ted4_schedule_network(t, range);
 
-    ted4_update_parameters(t);
+    ted4_update_parameters(t, 1);
     for (size_t b = 0; b < t->anchors.n_blocks; b++)
         for (int c = 0; c < t->layout.n_channels; c++) {
             const size_t at = (b * (size_t)t->layout.n_channels + (size_t)c) * TED4_LANES;

@@ -269,10 +269,10 @@ static double analytic(void)
     ted4_raster *raster = ted4_raster_new();
     ted4_loss_workspace *w = ted4_loss_workspace_new();
     const ted4_generate_input in = {
-        &pr.layout,   pr.net,     N_BLOCKS,
-        l.used,       l.position, pr.lanes,
-        pr.num,       pr.den,     { pr.camera[0], pr.camera[1], pr.camera[2] },
-        pr.activation
+        &pr.layout,    pr.net,     N_BLOCKS,
+        l.used,        l.position, pr.lanes,
+        pr.num,        pr.den,     { pr.camera[0], pr.camera[1], pr.camera[2] },
+        pr.activation, 0,          NULL
     };
     ted4_splats s;
     double bits[TED4_TYPES], l1, ssim, loss;

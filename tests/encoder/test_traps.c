@@ -33,8 +33,9 @@ static cloud_case cloud;
 /* Computes the gradients of the sum of all opacities at a frame, in t->visible_blocks.gradient. */
 static void opacity_gradients(ted4_trainer *t, uint32_t frame)
 {
-    ted4_generate_input in = { &t->layout, t->net.value, 0,          NULL,  NULL,
-                               NULL,       frame,        FRAMES - 1, { 0 }, 1 };
+    ted4_generate_input in = {
+        .layout = &t->layout, .net = t->net.value, .num = frame, .den = FRAMES - 1, .activation = 1
+    };
     ted4_splats s;
     ted4_splat_grads g;
 

@@ -200,7 +200,7 @@ static void test_masks(void **state)
         assert_non_null(before);
         memcpy(before, t.anchors.data[TED4_ROW_VALUE],
                t.visible_blocks.n * floats * sizeof *before);
-        ted4_update_parameters(&t);
+        ted4_update_parameters(&t, 1);
         check_logits(&t, before, t.layout.temporal_logit, 0.7);
         for (int k = 0; k < K; k++)
             check_logits(&t, before, t.layout.offset_logit + k,

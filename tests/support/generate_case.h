@@ -140,8 +140,16 @@ static inline void case_make(test_case *t, const ted4_header *h, uint32_t num, u
     for (size_t i = 0; i < n_used; i++)
         t->exact_net[i] = t->net[i] = 0.7f * case_random(t);
     t->in = (ted4_generate_input) {
-        &t->layout, t->net, CASE_BLOCKS, t->attr_list,           t->position_list,
-        t->lanes,   num,    den,         { 0.25f, -0.5f, 2.0f }, 1
+        .layout = &t->layout,
+        .net = t->net,
+        .n_visible = CASE_BLOCKS,
+        .attr = t->attr_list,
+        .position = t->position_list,
+        .lanes = t->lanes,
+        .num = num,
+        .den = den,
+        .camera = { 0.25f, -0.5f, 2.0f },
+        .activation = 1,
     };
     for (int i = 0; i < CASE_BLOCKS; i++) {
         t->attr_list[i] = t->attr[i];

@@ -51,7 +51,7 @@ static void gather_block(void *arg, size_t i)
     const gather_job *g = arg;
     ted4_trainer *t = g->t;
     const int K = t->layout.head.n_offsets;
-    const uint32_t lanes = t->visible_blocks.lanes[i], there = ted4_lanes_there(g->in, i);
+    const uint32_t lanes = g->in->lanes[i], there = ted4_lanes_there(g->in, i);
     float *opacity = ted4_block(&t->anchors, TED4_ROW_OPACITY, t->visible_blocks.block[i]);
     float *gradient = ted4_block(&t->anchors, TED4_ROW_GRADIENT, t->visible_blocks.block[i]);
 

@@ -15,7 +15,7 @@
 #include "train/model/header_from_options.h"
 
 #define MAGIC 0x34444554u /* "TED4" */
-enum { FORMAT = 11 };
+enum { FORMAT = 12 };
 
 /* One walk serves both directions: put() writes or reads the bytes at p. whole: includes the
  * monitor's last good state. left: when reading, the bytes of the file that put() has not read

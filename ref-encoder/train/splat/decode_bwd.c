@@ -108,20 +108,6 @@ static void endless_rotation_backward(block_state *s, int k)
     }
 }
 
-static void colour_backward(block_state *s, int k, const float *const *gr)
-{
-    const float *v = ted4_gen_plane(s->planes, s->g->plane.colour + 3 * k);
-    float *d_y = d_plane(s, s->g->plane.colour + 3 * k);
-
-    for (int c = 0; c < 3; c++, v += TED4_LANES, d_y += TED4_LANES) {
-        const float *d = gr[TED4_GEN_COLOUR + c];
-
-#pragma omp simd
-        for (int j = 0; j < TED4_LANES; j++)
-            d_y[j] = ted4_lane_keep(s->on[j], d[j]) * v[j] * (1.0f - v[j]);
-    }
-}
-
 /* Forward: o = 2 sigmoid(2 y) - 1, opacity = mask max(o, 0) A. So do/dy = 1 - o o. */
 static void opacity_backward(block_state *s, int k, const float *const *gr)
 {
@@ -156,7 +142,6 @@ static void splats_backward(block_state *s, const ted4_splat_grads *gr, size_t v
         for (int c = 0; c < 3; c++) {
             d[TED4_GEN_MEAN + c] = gr->mean[c] + at;
             d[TED4_GEN_SCALE + c] = gr->scale[c] + at;
-            d[TED4_GEN_COLOUR + c] = gr->colour[c] + at;
         }
         for (int c = 0; c < 4; c++)
             d[TED4_GEN_ROT + c] = gr->rot[c] + at;
@@ -164,55 +149,23 @@ static void splats_backward(block_state *s, const ted4_splat_grads *gr, size_t v
         geometry_backward(s, k, d);
         rotation_backward(s, k, d);
         endless_rotation_backward(s, k);
-        colour_backward(s, k, d);
         opacity_backward(s, k, d);
     }
 }
 
-static void heads_backward(block_state *s)
+static void heads_backward(block_state *s, const ted4_gen_job *t, size_t visible)
 {
     const ted4_generator *g = s->g;
     const int moves = g->chain[TED4_NET_DEFORM].n > 0;
+    const size_t row = ted4_gen_view_row(g);
 
-    ted4_gen_chain_backward(g, &g->chain[TED4_NET_COLOUR], s->planes, s->d, s->d_feature, 0);
+    if (t->in->by_view)
+        memcpy(s->d_feature, t->in->view_sum + visible * row, row * sizeof(float));
+    else
+        ted4_gen_colours_backward(g, t->gr, visible, s->on, s->d, s->d_feature);
     ted4_gen_chain_backward(g, &g->chain[TED4_NET_OPACITY], s->planes, s->d, s->d_feature, 1);
     ted4_gen_chain_backward(g, &g->chain[TED4_NET_COVARIANCE], s->planes, s->d,
                             moves ? s->d_moved : s->d_feature, !moves);
-}
-
-/* Forward: e = (p - c) / |p - c|, and c is the camera's centre. So dc = -(de - (de e) e) / |p - c|,
- * which is added lane by lane to d_camera [3][32]. */
-static void view_backward(const block_state *s, const float *camera, const float *position,
-                          float *d_camera)
-{
-    const ted4_generator *g = s->g;
-    const int f = g->layout.head.feature_dim;
-    const int twice = g->layout.head.view == TED4_VIEW_FULL && g->chain[TED4_NET_DEFORM].n > 0;
-    const float *e, *d, *d2;
-
-    if (g->plane.view < 0)
-        return;
-    e = ted4_gen_plane(s->planes, g->plane.view);
-    d = ted4_gen_plane(s->d_feature, f);
-    d2 = ted4_gen_plane(s->d_moved, f);
-#pragma omp simd
-    for (int j = 0; j < TED4_LANES; j++) {
-        float de[3], along = 0, square = 0;
-
-        for (int c = 0; c < 3; c++) {
-            const float x = position[c * TED4_LANES + j] - camera[c];
-
-            de[c] = d[c * TED4_LANES + j] + (twice ? d2[c * TED4_LANES + j] : 0.0f);
-            along += de[c] * e[c * TED4_LANES + j];
-            square += x * x;
-        }
-        const float n = sqrtf(square);
-        const int32_t far = s->on[j] & -(n >= TED4_SHORT);
-
-        for (int c = 0; c < 3; c++)
-            d_camera[c * TED4_LANES + j] -=
-                ted4_lane_keep(far, (de[c] - along * e[c * TED4_LANES + j]) / n);
-    }
 }
 
 /* Forward: p' = p + m y, f' = f + m y'. So d_y = m d, with d the gradient of p' or f'. */
@@ -324,8 +277,9 @@ static void backward_block(const ted4_gen_job *t, size_t visible, float *d, floa
     ted4_lane_set(t->in->lanes[visible], s.on);
     memset(s.d_attr, 0, (size_t)l->n_channels * TED4_LANES * sizeof *s.d_attr);
     splats_backward(&s, t->gr, visible);
-    heads_backward(&s);
-    view_backward(&s, t->in->camera, t->in->position[visible], d_camera);
+    heads_backward(&s, t, visible);
+    if (!t->in->by_view)
+        ted4_gen_camera_backward(t, visible, s.on, s.d_feature, s.d_moved, d_camera);
     if (t->g->chain[TED4_NET_DEFORM].n > 0)
         deform_backward(&s);
     feature_backward(&s);
@@ -352,15 +306,11 @@ void TED4_LEVELED(ted4_gen_backward)(void *arg, size_t chunk)
             backward_block(t, visible, d + (visible - from) * g->d_size,
                            d + TED4_GEN_GROUP * g->d_size, d_camera);
         for (int net = 0; net < TED4_NETS_R; net++)
-            ted4_gen_chain_weights(g, &g->chain[net], ted4_gen_saved(g, from), d, to - from, grad);
+            if (net != TED4_NET_COLOUR || !t->in->by_view)
+                ted4_gen_chain_weights(g, &g->chain[net], ted4_gen_saved(g, from), d, to - from,
+                                       grad);
     }
-    for (int c = 0; c < 3; c++) {
-        float sum = 0;
-
-        for (int j = 0; j < TED4_LANES; j++)
-            sum += d_camera[c * TED4_LANES + j];
-        g->d_camera[chunk][c] = sum;
-    }
+    ted4_gen_camera_sum(d_camera, g->d_camera[chunk]);
 }
 
 /* Sums one range of the gradient arrays over the chunks, in their order. */

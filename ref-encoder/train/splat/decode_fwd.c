@@ -7,32 +7,6 @@
 #include <math.h>
 #include <string.h>
 
-/* Copies n channels, with 0 in unused lanes. */
-static void copy_lanes(int n, const int32_t *on, const float *from, float *to)
-{
-    for (int c = 0; c < n; c++, from += TED4_LANES, to += TED4_LANES) {
-#pragma omp simd
-        for (int j = 0; j < TED4_LANES; j++)
-            to[j] = ted4_lane_keep(on[j], from[j]);
-    }
-}
-
-/* spec 11.5: computes the direction from the camera to each anchor. */
-static void view_directions(const float *camera, const float *position, float *to)
-{
-#pragma omp simd
-    for (int j = 0; j < TED4_LANES; j++) {
-        float x = position[j] - camera[0];
-        float y = position[TED4_LANES + j] - camera[1];
-        float z = position[2 * TED4_LANES + j] - camera[2];
-
-        ted4_view_direction(&x, &y, &z);
-        to[j] = x;
-        to[TED4_LANES + j] = y;
-        to[2 * TED4_LANES + j] = z;
-    }
-}
-
 static void load_block(ted4_generator *g, const ted4_generate_input *in, size_t visible,
                        const float *position, const int32_t *on)
 {
@@ -40,11 +14,11 @@ static void load_block(ted4_generator *g, const ted4_generate_input *in, size_t 
     const float *attr = in->attr[visible];
     float *planes = ted4_gen_saved(g, visible);
 
-    copy_lanes(f, on, attr, ted4_gen_plane(planes, g->plane.feature));
-    copy_lanes(g->layout.n_channels - f, on, attr + (size_t)f * TED4_LANES,
-               ted4_gen_plane(planes, g->plane.rest));
+    ted4_gen_copy_lanes(f, on, attr, ted4_gen_plane(planes, g->plane.feature));
+    ted4_gen_copy_lanes(g->layout.n_channels - f, on, attr + (size_t)f * TED4_LANES,
+                        ted4_gen_plane(planes, g->plane.rest));
     if (g->plane.view >= 0)
-        view_directions(in->camera, position, ted4_gen_plane(planes, g->plane.view));
+        ted4_gen_view_directions(in->camera, position, ted4_gen_plane(planes, g->plane.view));
     if (g->plane.point >= 0)
         ted4_gen_encode_points(position, ted4_gen_plane(planes, g->plane.point));
 }
@@ -115,20 +89,16 @@ static void activation(const ted4_generator *g, const ted4_generate_input *in, f
     }
 }
 
-/* spec 11.5: applies 2 sigmoid(2 y) - 1 and sigmoids to the heads' outputs, in place, except for
- * quaternions. */
+/* spec 11.5: applies 2 sigmoid(2 y) - 1 and sigmoids to the outputs of the heads of opacity and
+ * covariance, in place, except for quaternions. */
 static void squash(const ted4_generator *g, float *planes)
 {
     const int k = g->layout.head.n_offsets;
     float *opacity = ted4_gen_plane(planes, g->plane.opacity);
-    float *colour = ted4_gen_plane(planes, g->plane.colour);
 
 #pragma omp simd
     for (int j = 0; j < k * TED4_LANES; j++)
         opacity[j] = 2.0f * ted4_lane_sigmoid(2.0f * opacity[j]) - 1.0f;
-#pragma omp simd
-    for (int j = 0; j < 3 * k * TED4_LANES; j++)
-        colour[j] = ted4_lane_sigmoid(colour[j]);
     for (int i = 0; i < k; i++) {
         float *scale = ted4_gen_plane(planes, g->plane.covariance + 7 * i);
 
@@ -156,7 +126,8 @@ static void emit_rotation(const float *q, float *const *out)
     }
 }
 
-/* Writes the Gaussians of offset k of a visible block. position: of the moved anchors. */
+/* Writes the Gaussians of offset k of a visible block, except for colours. position: of the moved
+ * anchors. */
 static void emit(const ted4_generator *g, float *planes, const float *position, const int32_t *on,
                  int k, float *const *out)
 {
@@ -164,7 +135,6 @@ static void emit(const ted4_generator *g, float *planes, const float *position, 
     const float *offset = ted4_gen_channel(g, planes, g->layout.first[TED4_OFFSET] + 3 * k);
     const float *logit = ted4_gen_channel(g, planes, g->layout.offset_logit + k);
     const float *covariance = ted4_gen_plane(planes, g->plane.covariance + 7 * k);
-    const float *colour = ted4_gen_plane(planes, g->plane.colour + 3 * k);
     const float *o = ted4_gen_plane(planes, g->plane.opacity + k);
     const float *active = ted4_gen_plane(planes, g->plane.active);
     const int32_t all = g->layout.head.offset_mask ? 0 : -1;
@@ -179,7 +149,6 @@ static void emit(const ted4_generator *g, float *planes, const float *position, 
             mean[j] = ted4_fma(offset[row + j], size[row + j], position[row + j]);
             scale[j] = size[3 * TED4_LANES + row + j] * covariance[row + j];
         }
-        memcpy(out[TED4_GEN_COLOUR + c], colour + row, TED4_LANES * sizeof *colour);
     }
     emit_rotation(covariance + 3 * TED4_LANES, out + TED4_GEN_ROT);
 #pragma omp simd
@@ -200,14 +169,13 @@ void TED4_LEVELED(ted4_gen_forward)(void *job, size_t visible)
     int32_t on[TED4_LANES];
 
     ted4_lane_set(t->in->lanes[visible], on);
-    copy_lanes(3, on, t->in->position[visible], position);
+    ted4_gen_copy_lanes(3, on, t->in->position[visible], position);
     load_block(g, t->in, visible, position, on);
     sizes(g, planes);
     if (g->chain[TED4_NET_DEFORM].n > 0)
         deform(g, planes, position);
     ted4_gen_chain_forward(&g->chain[TED4_NET_OPACITY], planes);
     ted4_gen_chain_forward(&g->chain[TED4_NET_COVARIANCE], planes);
-    ted4_gen_chain_forward(&g->chain[TED4_NET_COLOUR], planes);
     activation(g, t->in, planes);
     squash(g, planes);
     for (int i = 0; i < k; i++) {
@@ -217,4 +185,6 @@ void TED4_LEVELED(ted4_gen_forward)(void *job, size_t visible)
             out[a] = ted4_gen_splats(g, a, visible) + (size_t)i * TED4_LANES;
         emit(g, planes, position, on, i, out);
     }
+    if (!t->in->by_view)
+        ted4_gen_emit_colours(g, visible);
 }

@@ -9,9 +9,14 @@
 #include "train/math/lane_math.h"
 
 /* chain.c: each file calls the copy of its own level. */
-#define ted4_gen_chain_forward  TED4_LEVELED(ted4_gen_chain_forward)
-#define ted4_gen_chain_backward TED4_LEVELED(ted4_gen_chain_backward)
-#define ted4_gen_chain_weights  TED4_LEVELED(ted4_gen_chain_weights)
+#define ted4_gen_chain_forward    TED4_LEVELED(ted4_gen_chain_forward)
+#define ted4_gen_chain_backward   TED4_LEVELED(ted4_gen_chain_backward)
+#define ted4_gen_chain_weights    TED4_LEVELED(ted4_gen_chain_weights)
+/* view_colours.c: so too. */
+#define ted4_gen_view_directions  TED4_LEVELED(ted4_gen_view_directions)
+#define ted4_gen_emit_colours     TED4_LEVELED(ted4_gen_emit_colours)
+#define ted4_gen_camera_backward  TED4_LEVELED(ted4_gen_camera_backward)
+#define ted4_gen_colours_backward TED4_LEVELED(ted4_gen_colours_backward)
 
 void ted4_gen_chain_forward(const ted4_gen_chain *c, float *planes);
 /* Backpropagates through a chain. d (planes of layer outputs) holds dy of the last layer and
@@ -22,5 +27,41 @@ void ted4_gen_chain_backward(const ted4_generator *g, const ted4_gen_chain *c, f
 /* Adds the weight gradients of n visible blocks to grad. */
 void ted4_gen_chain_weights(const ted4_generator *g, const ted4_gen_chain *c, float *planes,
                             float *d, size_t n, float *grad);
+
+/* Copies n channels, with 0 in unused lanes. */
+static inline void ted4_gen_copy_lanes(int n, const int32_t *on, const float *from, float *to)
+{
+    for (int c = 0; c < n; c++, from += TED4_LANES, to += TED4_LANES) {
+#pragma omp simd
+        for (int j = 0; j < TED4_LANES; j++)
+            to[j] = ted4_lane_keep(on[j], from[j]);
+    }
+}
+
+/* spec 11.5: computes the direction from the camera to each anchor, from [3][32] to [3][32]. */
+void ted4_gen_view_directions(const float *camera, const float *position, float *to);
+/* spec 11.5: evaluates the colour head of a visible block, from the saved planes of its input to
+ * those of colours, and copies these to its Gaussians. */
+void ted4_gen_emit_colours(const ted4_generator *g, size_t visible);
+/* Backpropagates the gradients of the colours of a visible block. d: planes of layer outputs;
+ * d_feature: [F + 3 planes], overwritten. */
+void ted4_gen_colours_backward(const ted4_generator *g, const ted4_splat_grads *gr, size_t visible,
+                               const int32_t *on, float *d, float *d_feature);
+
+/* Forward: e = (p - c) / |p - c|, and c is the camera's centre. So dc = -(de - (de e) e) / |p - c|,
+ * which is added lane by lane to d_camera [3][32]. d_feature, d_moved: gradients of the heads'
+ * inputs, [F + 3 planes]. */
+void ted4_gen_camera_backward(const ted4_gen_job *t, size_t visible, const int32_t *on,
+                              const float *d_feature, const float *d_moved, float *d_camera);
+
+/* Sums d_camera [3][32] over the lanes. */
+static inline void ted4_gen_camera_sum(const float *d_camera, float sum[3])
+{
+    for (int c = 0; c < 3; c++) {
+        sum[c] = 0;
+        for (int j = 0; j < TED4_LANES; j++)
+            sum[c] += d_camera[c * TED4_LANES + j];
+    }
+}
 
 #endif

@@ -94,6 +94,7 @@ struct ted4_generator {
     size_t capacity; /* number of visible blocks that fit */
     float *saved;    /* [capacity][plane.n][32] owned */
     float *splats;   /* [TED4_GEN_ARRAYS][capacity K 32] owned */
+    float *shown;    /* [capacity K 32] owned: opacities of one of several views */
 };
 
 /* The arguments of the forward and the backward pass over the visible blocks. */
@@ -103,6 +104,7 @@ typedef struct {
     const ted4_splat_grads *gr;
     float *const *d_attr;
     float *d_net;
+    float *view_sum; /* colours of one of several views: their gradients */
 } ted4_gen_job;
 
 /* Returns n floats, 64-byte aligned, or NULL if memory ran out. Free with free(). */
@@ -126,6 +128,10 @@ void ted4_gen_encode_points(const float *position, float *to);
 TED4_EACH_LEVEL(void, ted4_gen_forward, void *job, size_t visible);
 TED4_EACH_LEVEL(void, ted4_gen_backward, void *job, size_t chunk);
 TED4_EACH_LEVEL(void, ted4_gen_sum_range, void *job, size_t range);
+
+/* view_colours.c: the same for the colours of one of several views. */
+TED4_EACH_LEVEL(void, ted4_gen_view_forward, void *job, size_t visible);
+TED4_EACH_LEVEL(void, ted4_gen_view_backward, void *job, size_t chunk);
 
 /* effective_layer.c: computes the effective layer. For motion type bank, w has n_time columns and p
  * has n_time rows; otherwise, w has in + n_time columns and p is not used. */
@@ -171,6 +177,29 @@ static inline float *ted4_gen_splats(const ted4_generator *g, int a, size_t visi
 static inline size_t ted4_gen_first(size_t n_visible, size_t chunk)
 {
     return n_visible * chunk / TED4_GEN_CHUNKS;
+}
+
+/* Returns the index of the colour head's gradients in a chunk's gradient array. */
+static inline size_t ted4_gen_colour_grad(const ted4_generator *g)
+{
+    return g->n_effective + g->layout.shape.netr[TED4_NET_COLOUR].first - g->net_tail;
+}
+
+/* Returns the number of weights of the colour head. */
+static inline size_t ted4_gen_colour_weights(const ted4_generator *g)
+{
+    const ted4_net_shape *s = &g->layout.shape.netr[TED4_NET_COLOUR];
+    size_t n = 0;
+
+    for (int i = 0; i < s->n_layers; i++)
+        n += ted4_layer_size(s, (unsigned)i);
+    return n;
+}
+
+/* Returns the floats of one visible block in the gradients behind colours of a view. */
+static inline size_t ted4_gen_view_row(const ted4_generator *g)
+{
+    return (size_t)g->layout.head.feature_dim * TED4_LANES;
 }
 
 static inline int ted4_gen_activated(const ted4_generator *g, const ted4_generate_input *in)

@@ -4,6 +4,7 @@
 #include "decode_state.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 ted4_generator *ted4_generator_new(const ted4_layout *l)
 {
@@ -31,6 +32,7 @@ void ted4_generator_free(ted4_generator *g)
     free(g->d_planes);
     free(g->saved);
     free(g->splats);
+    free(g->shown);
     free(g);
 }
 
@@ -56,9 +58,11 @@ static int reserve(ted4_generator *g, size_t n)
     capacity = n + n / 4 + 1;
     free(g->saved);
     free(g->splats);
+    free(g->shown);
     g->saved = ted4_gen_alloc(capacity * ted4_gen_stride(g));
     g->splats = ted4_gen_alloc(TED4_GEN_ARRAYS * capacity * row);
-    g->capacity = g->saved != NULL && g->splats != NULL ? capacity : 0;
+    g->shown = ted4_gen_alloc(capacity * row);
+    g->capacity = g->saved != NULL && g->splats != NULL && g->shown != NULL ? capacity : 0;
     return g->capacity != 0 ? 0 : -1;
 }
 
@@ -83,22 +87,73 @@ int ted4_generate(ted4_generator *g, const ted4_generate_input *in, const ted4_p
     return 0;
 }
 
+/* Sums the gradients of the camera's centre over the chunks. */
+static void add_cameras(ted4_generator *g)
+{
+    for (int chunk = 1; chunk < TED4_GEN_CHUNKS; chunk++)
+        for (int c = 0; c < 3; c++)
+            g->d_camera[0][c] += g->d_camera[chunk][c];
+}
+
+/* Adds the gradients of the colour head, summed over the views. */
+static void add_colour_head(const ted4_generator *g, const ted4_generate_input *in, float *d_net)
+{
+    const size_t n = ted4_gen_colour_weights(g);
+    const float *sum = in->view_sum + in->n_visible * ted4_gen_view_row(g);
+    float *to = d_net + g->layout.netr + g->layout.shape.netr[TED4_NET_COLOUR].first;
+
+    for (size_t i = 0; i < n; i++)
+        to[i] += sum[i];
+}
+
 int ted4_generate_backward(ted4_generator *g, const ted4_generate_input *in,
                            const ted4_splat_grads *gr, const ted4_parallel *p, float *const *d_attr,
                            float *d_net)
 {
-    ted4_gen_job t = { g, in, gr, d_attr, d_net };
+    ted4_gen_job t = { g, in, gr, d_attr, d_net, NULL };
 
     ted4_parallel_for(p, TED4_GEN_CHUNKS, TED4_IN_USE(ted4_gen_backward), &t);
     ted4_parallel_for(p, TED4_GEN_CHUNKS, TED4_IN_USE(ted4_gen_sum_range), &t);
+    if (in->by_view)
+        add_colour_head(g, in, d_net);
     TED4_IN_USE(ted4_gen_motion_backward)(g, in->net, d_net);
-    for (int chunk = 1; chunk < TED4_GEN_CHUNKS; chunk++)
-        for (int c = 0; c < 3; c++)
-            g->d_camera[0][c] += g->d_camera[chunk][c];
+    add_cameras(g);
     return 0;
 }
 
 const float *ted4_generate_camera_gradient(const ted4_generator *g)
 {
     return g->d_camera[0];
+}
+
+void ted4_generate_view(ted4_generator *g, const ted4_generate_input *in, const ted4_parallel *p,
+                        ted4_splats *out)
+{
+    ted4_gen_job t = { .g = g, .in = in };
+
+    ted4_parallel_for(p, in->n_visible, TED4_IN_USE(ted4_gen_view_forward), &t);
+    out->opacity = g->shown;
+}
+
+size_t ted4_generate_view_size(const ted4_generator *g, size_t n_visible)
+{
+    return n_visible * ted4_gen_view_row(g) + ted4_gen_colour_weights(g);
+}
+
+void ted4_generate_view_backward(ted4_generator *g, const ted4_generate_input *in,
+                                 const ted4_splat_grads *gr, const ted4_parallel *p, float *sum)
+{
+    ted4_gen_job t = { .g = g, .in = in, .gr = gr, .view_sum = sum };
+    const size_t n = ted4_gen_colour_weights(g);
+    float *weights = sum + in->n_visible * ted4_gen_view_row(g);
+
+    ted4_parallel_for(p, TED4_GEN_CHUNKS, TED4_IN_USE(ted4_gen_view_backward), &t);
+    add_cameras(g);
+    memset(weights, 0, n * sizeof *weights);
+    for (size_t c = 0; c < TED4_GEN_CHUNKS; c++) {
+        const float *grad = g->grad + c * g->n_grad + ted4_gen_colour_grad(g);
+
+        for (size_t i = 0; i < n; i++)
+            weights[i] += grad[i];
+    }
 }

@@ -22,6 +22,12 @@ typedef struct {
     uint32_t num, den;     /* time, spec 11 */
     float camera[3];       /* normalised space: (c - origin) 2^-e */
     int activation;        /* 0: activation is taken as 1 (static phase), even if tau is present */
+    /* 1: several views of this time follow (ted4_generate_view), which share everything but
+     * colours. Only if the heads of opacity and covariance do not depend on the view. */
+    int by_view;
+    /* With by_view, for ted4_generate_backward: the mean over the views of what
+     * ted4_generate_view_backward returns, as gr is their mean. */
+    const float *view_sum;
 } ted4_generate_input;
 
 typedef struct ted4_generator ted4_generator; /* saved activations, packed weights */
@@ -36,14 +42,26 @@ void ted4_generator_pack(ted4_generator *g, const float *net);
  * ted4_generate_backward needs. Returns 0, or -1 if memory ran out. */
 int ted4_generate(ted4_generator *g, const ted4_generate_input *in, const ted4_parallel *p,
                   ted4_splats *out);
-/* Call after ted4_generate with the same input. gr: gradients of the splats. d_attr: [n_visible]
- * blocks, overwritten. d_net: gradients of the NETR and BANK parts are added to it. Sums have a
- * fixed order. Returns 0. */
+/* Call after ted4_generate with the same input. gr: gradients of the splats; of
+ * the colours only without by_view. d_attr: [n_visible] blocks, overwritten. d_net: gradients of
+ * the NETR and BANK parts are added to it. Sums have a fixed order. Returns 0. */
 int ted4_generate_backward(ted4_generator *g, const ted4_generate_input *in,
                            const ted4_splat_grads *gr, const ted4_parallel *p, float *const *d_attr,
                            float *d_net);
-/* Returns the gradient [3] of in->camera from the last ted4_generate_backward: zero if nothing
- * depends on the viewing direction. */
+/* Returns the gradient [3] of in->camera from the last ted4_generate_backward, or with by_view from
+ * the last ted4_generate_view_backward: zero if nothing depends on the viewing direction. */
 const float *ted4_generate_camera_gradient(const ted4_generator *g);
+
+/* After ted4_generate with by_view: computes colours for in->camera, and the opacities of in->lanes
+ * alone, which are some of the lanes of ted4_generate; all else in *in is as in that call. *out
+ * receives both, valid until the next call. */
+void ted4_generate_view(ted4_generator *g, const ted4_generate_input *in, const ted4_parallel *p,
+                        ted4_splats *out);
+/* Returns the floats of the gradients behind colours, for n visible blocks. */
+size_t ted4_generate_view_size(const ted4_generator *g, size_t n_visible);
+/* After ted4_generate_view with the same input: from the gradients of colours to those of features
+ * and of the colour head, sum[ted4_generate_view_size], overwritten. */
+void ted4_generate_view_backward(ted4_generator *g, const ted4_generate_input *in,
+                                 const ted4_splat_grads *gr, const ted4_parallel *p, float *sum);
 
 #endif

@@ -15,7 +15,7 @@ enum { DIRECTIONS = 8 };
 static int generate_all(ted4_trainer *t, uint32_t item, ted4_splats *s)
 {
     ted4_view v;
-    ted4_generate_input in = { &t->layout, t->net.value, 0, NULL, NULL, NULL, 0, 1, { 0 }, 0 };
+    ted4_generate_input in = { .layout = &t->layout, .net = t->net.value, .den = 1 };
 
     if (ted4_visible_blocks_fill(t, NULL) != 0)
         return -1;

@@ -52,5 +52,6 @@ void ted4_trainer_finish(ted4_trainer *t)
     free(t->work.d_image);
     free(t->work.splat_storage);
     free(t->work.splat_visible);
+    ted4_view_sums_finish(&t->work.view_sums);
     memset(t, 0, sizeof *t);
 }

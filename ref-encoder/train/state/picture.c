@@ -9,13 +9,9 @@
 #include "dropout.h"
 #include "visible_blocks.h"
 
-int ted4_trainer_render(ted4_trainer *t, const ted4_picture *pic, ted4_pass pass, ted4_view *v,
-                        ted4_generate_input *in, ted4_splats *s)
+int ted4_trainer_generate(ted4_trainer *t, const ted4_picture *pic, ted4_pass pass,
+                          ted4_generate_input *in, ted4_splats *s)
 {
-    memset(in, 0, sizeof *in);
-    ted4_trainer_view(t, pic, v, in->camera);
-    if (ted4_visible_blocks_fill(t, v) != 0)
-        return -1;
     if (pass == TED4_PASS_STEP)
         ted4_dropout(t);
     in->layout = &t->layout;
@@ -30,11 +26,22 @@ int ted4_trainer_render(ted4_trainer *t, const ted4_picture *pic, ted4_pass pass
     ted4_visible_blocks_quantise(
         t, pass != TED4_PASS_IMAGE && !t->phase.integer ? TED4_QUANT_NOISE : TED4_QUANT_ROUND);
     ted4_generator_pack(t->work.generator, t->net.value);
-    if (ted4_generate(t->work.generator, in, t->parallel, s) != 0 ||
-        ted4_raster_forward(t->work.raster, s, v, t->parallel, pass != TED4_PASS_IMAGE,
-                            t->work.image) != 0)
-        return ted4_trainer_fail(t, "no memory to render");
-    return 0;
+    return ted4_generate(t->work.generator, in, t->parallel, s) != 0
+               ? ted4_trainer_fail(t, "no memory to render")
+               : 0;
+}
+
+int ted4_trainer_render(ted4_trainer *t, const ted4_picture *pic, ted4_pass pass, ted4_view *v,
+                        ted4_generate_input *in, ted4_splats *s)
+{
+    memset(in, 0, sizeof *in);
+    ted4_trainer_view(t, pic, v, in->camera);
+    if (ted4_visible_blocks_fill(t, v) != 0 || ted4_trainer_generate(t, pic, pass, in, s) != 0)
+        return -1;
+    return ted4_raster_forward(t->work.raster, s, v, t->parallel, pass != TED4_PASS_IMAGE,
+                               t->work.image) != 0
+               ? ted4_trainer_fail(t, "no memory to render")
+               : 0;
 }
 
 /* Makes room for the gradients of n splats. */

@@ -15,6 +15,11 @@ typedef enum {
     TED4_PASS_JUDGE  /* the gradients of all anchors: the same without dropout */
 } ted4_pass;
 
+/* Generates the Gaussians of t->visible_blocks at the time of pic, as seen from in->camera.
+ * in->camera and in->by_view are given; the rest of *in and *s
+ * is filled and borrows from t. Returns 0, or -1 with t->message filled. */
+int ted4_trainer_generate(ted4_trainer *t, const ted4_picture *pic, ted4_pass pass,
+                          ted4_generate_input *in, ted4_splats *s);
 /* Does the forward pass of one picture. Fills t->visible_blocks for its view, and t->work.image,
  * planar. *in and *s borrow from t, and are valid until the next pass. Returns 0, or -1 with
  * t->message filled. */

@@ -17,8 +17,10 @@
 #include "train/raster/raster_bwd.h"
 #include "train/rate/rate.h"
 #include "train/splat/generator.h"
+#include "view_sums.h"
 
-/* The order of the training pictures: random without replacement, then reshuffled. */
+/* The order of the training pictures: random without replacement, then reshuffled
+ * (step/picture_order.h). */
 typedef struct {
     uint32_t *item; /* owned: picture numbers */
     uint32_t n, next;
@@ -40,6 +42,7 @@ typedef struct {
     size_t n, capacity;
     uint32_t *block; /* [n] */
     uint32_t *lanes; /* [n] */
+    uint32_t *seen;  /* [n] of several views of one time, the lanes of the latest */
     /* [n] Index of its Gaussians among those rendered: the block's own index, until
      * ted4_update_rate reorders the visible blocks. */
     uint32_t *drawn;
@@ -102,6 +105,7 @@ typedef struct {
     uint8_t *splat_visible; /* owned */
     size_t splat_capacity;
     ted4_splat_grads splat_gradient; /* borrows from splat_storage and splat_visible */
+    ted4_view_sums view_sums;        /* of a step with several views */
 } ted4_step_work;
 
 /* The whole state. Each part names the folder that writes it; the folders above that one read

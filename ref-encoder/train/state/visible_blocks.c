@@ -63,6 +63,7 @@ static int reserve(ted4_trainer *t, size_t n)
     n += n / 2 + 8;
     s->block = malloc(n * sizeof *s->block);
     s->lanes = malloc(n * sizeof *s->lanes);
+    s->seen = malloc(n * sizeof *s->seen);
     s->drawn = malloc(n * sizeof *s->drawn);
     s->position = malloc(n * sizeof *s->position);
     s->raw = malloc(n * sizeof *s->raw);
@@ -72,9 +73,9 @@ static int reserve(ted4_trainer *t, size_t n)
     s->quantised = aligned_alloc(64, n * floats * sizeof(float));
     s->gradients = aligned_alloc(64, n * floats * sizeof(float));
     s->squares = malloc(n * (TED4_BLOCK_TERMS + 1) * sizeof *s->squares);
-    if (s->block == NULL || s->lanes == NULL || s->drawn == NULL || s->position == NULL ||
-        s->raw == NULL || s->used == NULL || s->gradient == NULL || s->steps == NULL ||
-        s->quantised == NULL || s->gradients == NULL || s->squares == NULL)
+    if (s->block == NULL || s->lanes == NULL || s->seen == NULL || s->drawn == NULL ||
+        s->position == NULL || s->raw == NULL || s->used == NULL || s->gradient == NULL ||
+        s->steps == NULL || s->quantised == NULL || s->gradients == NULL || s->squares == NULL)
         return ted4_trainer_fail(t, "no memory for %zu blocks", n);
     s->capacity = n;
     return 0;
@@ -84,6 +85,7 @@ void ted4_visible_blocks_finish(ted4_visible_blocks *s)
 {
     free(s->block);
     free(s->lanes);
+    free(s->seen);
     free(s->drawn);
     free(s->position);
     free(s->raw);
@@ -101,7 +103,8 @@ enum { LOOKED_AT = 8 };
 
 typedef struct {
     const ted4_trainer *t;
-    const ted4_view *v;
+    const ted4_view *v; /* [n_views] */
+    size_t n_views;
     uint32_t *lanes; /* [n_blocks] */
 } visible_job;
 
@@ -111,11 +114,19 @@ static void look_at_blocks(void *arg, size_t i)
     const ted4_anchors *a = &j->t->anchors;
     const size_t end = (i + 1) * LOOKED_AT < a->n_blocks ? (i + 1) * LOOKED_AT : a->n_blocks;
 
-    for (size_t b = i * LOOKED_AT; b < end; b++)
-        j->lanes[b] = j->v != NULL ? ted4_block_visible(j->t, b, j->v) : ted4_block_lanes(a, b);
+    for (size_t b = i * LOOKED_AT; b < end; b++) {
+        j->lanes[b] = j->n_views == 0 ? ted4_block_lanes(a, b) : 0;
+        for (size_t k = 0; k < j->n_views; k++)
+            j->lanes[b] |= ted4_block_visible(j->t, b, j->v + k);
+    }
 }
 
 int ted4_visible_blocks_fill(ted4_trainer *t, const ted4_view *v)
+{
+    return ted4_visible_blocks_of(t, v, v != NULL);
+}
+
+int ted4_visible_blocks_of(ted4_trainer *t, const ted4_view *v, size_t n)
 {
     ted4_visible_blocks *s = &t->visible_blocks;
     const size_t floats = (size_t)t->layout.n_channels * TED4_LANES;
@@ -125,7 +136,7 @@ int ted4_visible_blocks_fill(ted4_trainer *t, const ted4_view *v)
 
     /* The lanes of all blocks are computed first, in place, because the index of a visible block is
      * known only then. That index is at most the number of the block. */
-    visible_job j = { t, v, s->lanes };
+    visible_job j = { t, v, n, s->lanes };
 
     ted4_parallel_for(t->parallel, (t->anchors.n_blocks + LOOKED_AT - 1) / LOOKED_AT,
                       look_at_blocks, &j);

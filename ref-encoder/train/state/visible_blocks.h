@@ -12,6 +12,8 @@ uint32_t ted4_block_visible(const ted4_trainer *t, size_t block, const ted4_view
 /* Sets t->visible_blocks to the blocks that v sees, in order of their numbers; v NULL: to all
  * blocks. Returns 0, or -1 with t->message. */
 int ted4_visible_blocks_fill(ted4_trainer *t, const ted4_view *v);
+/* Does the same for n views: the blocks and lanes that at least one of them sees; n 0: all. */
+int ted4_visible_blocks_of(ted4_trainer *t, const ted4_view *v, size_t n);
 /* In stage 2, fills t->visible_blocks.used from the current values and step sizes. In stage 1, used
  * is the same as raw. */
 void ted4_visible_blocks_quantise(ted4_trainer *t, ted4_quant quant);

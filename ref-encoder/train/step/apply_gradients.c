@@ -2,6 +2,8 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "apply_gradients.h"
 
+#include <math.h>
+
 #include "train/monitor/grad_norm.h"
 #include "recon/strict.h"
 #include "schedule.h"
@@ -93,21 +95,26 @@ static void update_item(void *arg, size_t i)
         update_block(j, i - j->n_pieces);
 }
 
-void ted4_update_parameters(ted4_trainer *t)
+void ted4_update_parameters(ted4_trainer *t, size_t n_views)
 {
     const ted4_header *h = &t->layout.head;
     const uint64_t count = t->iteration - (t->phase.stage2 ? t->phase.stage2_start : 0) + 1;
     const double n = (double)t->anchors.n;
+    const float more = sqrtf((float)n_views);
     update_job j = { .t = t, .bias = ted4_adam_bias_make(count) };
 
     ted4_schedule_rates(t, j.rate);
+    for (int c = 0; c < t->layout.n_channels; c++)
+        j.rate[c] *= more;
     if (t->phase.stage2 && h->offset_mask)
         j.mask_weight =
             (float)(t->opt.lambda * t->opt.mask_weight / (n * t->phase.rate_norm_header.n_offsets));
     if (h->motion != TED4_MOTION_NONE && h->temporal_mask)
         j.temporal_weight = (float)(t->opt.temporal_weight / n);
-    for (int i = ted4_schedule_network(t, j.range) - 1; i >= 0; i--)
+    for (int i = ted4_schedule_network(t, j.range) - 1; i >= 0; i--) {
+        j.range[i].rate *= more;
         j.n_pieces += pieces_of(&j.range[i]);
+    }
     ted4_parallel_for(t->parallel, j.n_pieces + t->visible_blocks.n, update_item, &j);
 }
 

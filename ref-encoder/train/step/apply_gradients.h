@@ -7,9 +7,11 @@
 #include "train/state/trainer.h"
 
 /* Adds the gradients of the mask losses to those of t->visible_blocks, then does one step of Adam
- * for the anchors of t->visible_blocks and for the networks. t->visible_blocks.squares receives the
- * sizes of the gradients. */
-void ted4_update_parameters(ted4_trainer *t);
+ * for the anchors of t->visible_blocks and for the networks. n_views: views whose mean the
+ * gradients are; learning rates grow with its square root (Grendel-GS: Adam's steps then average
+ * out as over as many steps of one view). t->visible_blocks.squares receives the sizes of the
+ * gradients. */
+void ted4_update_parameters(ted4_trainer *t, size_t n_views);
 
 /* Does one step of Adam for this camera on L + penalty (sum of A^2 and v^2), and then
  * ted4_colour_centre. gradient is dL/d(map). */

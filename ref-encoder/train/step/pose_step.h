@@ -7,7 +7,8 @@
 #include "train/state/trainer.h"
 
 /* Adds the gradient of one picture's loss to that of its pose, if poses are learnt. Call once for
- * each picture of a step, after ted4_generate_backward; v and s as drawn. */
+ * each picture of a step, after ted4_generate_backward or, of several views, after
+ * ted4_generate_view_backward; v and s as drawn. */
 void ted4_pose_gather(ted4_trainer *t, const ted4_picture *pic, const ted4_view *v,
                       const ted4_splats *s);
 /* Does one step of Adam for the poses that have gathered gradients, and keeps the world where it

@@ -71,6 +71,10 @@ static int begin(ted4_trainer *t, const ted4_header *h)
         return ted4_trainer_fail(
             t, "no file can hold this scene with these options: %s is beyond its range in a header",
             wrong);
+    if (t->opt.batch > 1 && h->view == TED4_VIEW_FULL)
+        return ted4_trainer_fail(t,
+                                 "batch needs heads of opacity and covariance that do not depend "
+                                 "on the view (view 0 or 1)");
     ted4_layout_make(&t->layout, h);
     t->phase.rate_norm_header = t->layout.head;
     ted4_weight_grid_full(t->net.bits);

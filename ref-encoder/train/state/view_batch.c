@@ -1,0 +1,108 @@
+/* view_batch.c - see view_batch.h. A batch of one view needs no sums: its colours are generated
+ * together with everything else.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "view_batch.h"
+
+#include <string.h>
+
+#include "picture.h"
+#include "visible_blocks.h"
+
+/* Arrays of ted4_splat_grads that the views share: mean, scale, rotation, opacity. */
+enum { SHARED = 11 };
+
+static void shared_arrays(const ted4_splat_grads *g, float *array[SHARED])
+{
+    memcpy(array, g->mean, sizeof g->mean);
+    memcpy(array + 3, g->scale, sizeof g->scale);
+    memcpy(array + 6, g->rot, sizeof g->rot);
+    array[10] = g->opacity;
+}
+
+int ted4_batch_begin(ted4_trainer *t, ted4_view_batch *b, const uint32_t *item, size_t n)
+{
+    memset(b, 0, sizeof *b);
+    b->n = n;
+    b->item = item;
+    b->all.by_view = n > 1;
+    for (size_t i = 0; i < n; i++)
+        ted4_trainer_view(t, &t->data->pictures[item[i]], &b->v[i], b->camera[i]);
+    memcpy(b->all.camera, b->camera[0], sizeof b->all.camera);
+    if (ted4_visible_blocks_of(t, b->v, n) != 0 ||
+        ted4_trainer_generate(t, &t->data->pictures[item[0]], TED4_PASS_STEP, &b->all, &b->s) != 0)
+        return -1;
+    b->in = b->all;
+    if (n > 1 && ted4_view_sums_begin(&t->work.view_sums,
+                                      SHARED * b->s.n + ted4_generate_view_size(
+                                                            t->work.generator, t->visible_blocks.n),
+                                      n) != 0)
+        return ted4_trainer_fail(t, "no memory for sums over views");
+    return 0;
+}
+
+typedef struct {
+    const ted4_trainer *t;
+    const ted4_view *v;
+} seen_job;
+
+static void look_at_block(void *arg, size_t i)
+{
+    const seen_job *j = arg;
+    const ted4_visible_blocks *s = &j->t->visible_blocks;
+
+    s->seen[i] = s->lanes[i] & ted4_block_visible(j->t, s->block[i], j->v);
+}
+
+int ted4_batch_render(ted4_trainer *t, ted4_view_batch *b, size_t i)
+{
+    if (b->n > 1) {
+        seen_job j = { t, &b->v[i] };
+
+        ted4_parallel_for(t->parallel, t->visible_blocks.n, look_at_block, &j);
+        b->in.lanes = t->visible_blocks.seen;
+        memcpy(b->in.camera, b->camera[i], sizeof b->in.camera);
+        ted4_generate_view(t->work.generator, &b->in, t->parallel, &b->s);
+    }
+    return ted4_raster_forward(t->work.raster, &b->s, &b->v[i], t->parallel, 1, t->work.image) != 0
+               ? ted4_trainer_fail(t, "no memory to render")
+               : 0;
+}
+
+int ted4_batch_render_backward(ted4_trainer *t, ted4_view_batch *b, size_t i)
+{
+    return ted4_trainer_render_backward(t, &b->v[i], &b->s);
+}
+
+void ted4_batch_add(ted4_trainer *t, ted4_view_batch *b)
+{
+    float *array[SHARED];
+
+    if (b->n == 1)
+        return;
+
+    float *to = ted4_view_sums_next(&t->work.view_sums);
+
+    shared_arrays(&t->work.splat_gradient, array);
+    for (int k = 0; k < SHARED; k++)
+        memcpy(to + (size_t)k * b->s.n, array[k], b->s.n * sizeof *to);
+    ted4_generate_view_backward(t->work.generator, &b->in, &t->work.splat_gradient, t->parallel,
+                                to + SHARED * b->s.n);
+    ted4_view_sums_add(&t->work.view_sums, t->parallel);
+}
+
+int ted4_batch_backward(ted4_trainer *t, ted4_view_batch *b)
+{
+    if (b->n > 1) {
+        const float *mean = ted4_view_sums_mean(&t->work.view_sums, t->parallel);
+        float *array[SHARED];
+
+        shared_arrays(&t->work.splat_gradient, array);
+        for (int k = 0; k < SHARED; k++)
+            memcpy(array[k], mean + (size_t)k * b->s.n, b->s.n * sizeof *mean);
+        b->all.view_sum = mean + SHARED * b->s.n;
+    }
+    return ted4_generate_backward(t->work.generator, &b->all, &t->work.splat_gradient, t->parallel,
+                                  t->visible_blocks.gradient, t->net.gradient) != 0
+               ? ted4_trainer_fail(t, "no memory for gradients")
+               : 0;
+}

@@ -1,0 +1,16 @@
+/* picture_order.h - which pictures a step learns from: one, or a batch of one time. Depends on
+ * trainer.h.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#ifndef TED4_PICTURE_ORDER_H
+#define TED4_PICTURE_ORDER_H
+
+#include "train/state/trainer.h"
+
+/* Takes the next pictures, in random order without replacement: one, or with the option batch up to
+ * so many of one time, and announces those that follow. The pictures of a time are dealt into
+ * batches of equal size, as far as possible, anew in each round. item[*n] receives their numbers;
+ * it borrows from t->order and is valid until the next call. Returns 0, or -1 with t->message
+ * filled. */
+int ted4_next_pictures(ted4_trainer *t, const uint32_t **item, size_t *n);
+
+#endif
