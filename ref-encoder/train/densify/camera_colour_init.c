@@ -38,6 +38,9 @@ enum { ROUNDS = 8 };
 /* If the gain of the initial points is larger than this, or smaller than its inverse, their
  * colours do not come from the pictures, but are, for example, albedo or linear light. */
 #define MOST_GAIN 1.25
+/* Darker channels of points, of 1, do not count for the gain: noise of a few levels of 255 would
+ * make their ratio too uncertain. */
+#define DARK      0.15f
 
 typedef struct {
     ted4_trainer *t;
@@ -325,57 +328,30 @@ static void one_round(match *m, undo *back, double width)
 
 /* ---- what all cameras have in common ---- */
 
-/* Weighted sums, per channel, of the given colours of the points and of the colours that the
- * cameras see, over points where the two agree except for gain; and the sum of the weights. */
-typedef struct {
-    double given[3], seen[3], weight;
-} levels;
-
-static levels add_levels(const match *m, const double *gain, double width)
-{
-    levels s = { { 0 }, { 0 }, 0 };
-
-    for (size_t i = 0; i < m->n; i++) {
-        const uint8_t *given = m->t->data->point_rgb + 3 * i * m->stride;
-        double off = 0;
-
-        if (!m->shared[i])
-            continue;
-        for (size_t c = 0; c < 3; c++) {
-            const double e = gain[c] * (double)m->point[3 * i + c] - given[c] / 255.0;
-
-            off += e * e / 3.0;
-        }
-        const double near = 1.0 - off / (width * width), w = near > 0 ? near * near : 0.0;
-
-        s.weight += w;
-        for (size_t c = 0; c < 3; c++) {
-            s.given[c] += w * given[c] / 255.0;
-            s.seen[c] += w * (double)m->point[3 * i + c];
-        }
-    }
-    return s;
-}
-
 /* Finds the gain that all cameras share. The cameras alone do not determine it, but the given
- * colours of the initial points may. Only mean levels are compared, because both sides are noisy
- * and the slope of a fitted line would be too small. Changes nothing if hardly any point agrees,
- * or if the given colours mean something else. */
-static void find_gauge(match *m, undo *back)
+ * colours of the initial points may: it is the median of their ratio to the colours that the
+ * cameras see. Structure from motion gives points the colours of single cameras, so that the
+ * ratios come in clusters; the median lies between them, where a fit with narrow weights would
+ * settle on one. Changes nothing if hardly any point counts, or if the given colours mean something
+ * else. */
+static void find_gauge(match *m, undo *back, float *ratio)
 {
-    double gain[3] = { 1, 1, 1 };
+    const float white = 255.0f;
+    double gain[3];
 
     look_back(m, back);
-    for (int i = 0; i < 2 * ROUNDS; i++) {
-        const levels s = add_levels(
-            m, gain,
-            WIDEST / 255.0 * ted4_math_pow(NARROWEST / WIDEST, fmin(i / (ROUNDS - 1.0), 1)));
+    for (size_t c = 0; c < 3; c++) {
+        size_t n = 0;
 
-        for (int c = 0; c < 3; c++) {
-            gain[c] = s.given[c] / s.seen[c];
-            if (s.weight < FEWEST || !(gain[c] < MOST_GAIN && gain[c] > 1.0 / MOST_GAIN))
-                return;
-        }
+        for (size_t i = 0; i < m->n; i++)
+            if (m->shared[i] && m->point[3 * i + c] > DARK)
+                ratio[n++] = (float)m->t->data->point_rgb[3 * i * m->stride + c] / white /
+                             m->point[3 * i + c];
+        if ((double)n < FEWEST)
+            return;
+        gain[c] = (double)median(ratio, n);
+        if (!(gain[c] < MOST_GAIN && gain[c] > 1.0 / MOST_GAIN))
+            return;
     }
     ted4_colour_regauge(&m->t->colour, gain);
 }
@@ -405,6 +381,7 @@ static int work(match *m)
 {
     ted4_colour *colour = &m->t->colour;
     undo *back = calloc(m->cameras, sizeof *back);
+    float *ratio;
     int bad;
 
     m->seen = calloc(m->cameras, m->n);
@@ -412,15 +389,16 @@ static int work(match *m)
     m->point = malloc(3 * m->n * sizeof *m->point);
     m->shared = malloc(m->n);
     m->sorted = malloc(m->cameras * sizeof *m->sorted);
+    ratio = malloc(m->n * sizeof *ratio);
     bad = back == NULL || m->seen == NULL || m->rgb == NULL || m->point == NULL ||
-                  m->shared == NULL || m->sorted == NULL
+                  m->shared == NULL || m->sorted == NULL || ratio == NULL
               ? ted4_trainer_fail(m->t, "no memory to compare cameras")
               : look_around(m);
     for (int i = 0; i < ROUNDS && !bad; i++)
         one_round(m, back, WIDEST / 255.0 * ted4_math_pow(NARROWEST / WIDEST, i / (ROUNDS - 1.0)));
     colour->matched = !bad && differ(m);
     if (colour->matched)
-        find_gauge(m, back);
+        find_gauge(m, back, ratio);
     else
         memset(colour->value, 0, m->cameras * sizeof *colour->value);
     free(back);
@@ -429,6 +407,7 @@ static int work(match *m)
     free(m->point);
     free(m->shared);
     free(m->sorted);
+    free(ratio);
     return bad;
 }
 
