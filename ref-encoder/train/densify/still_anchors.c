@@ -7,7 +7,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "train/model/normalise.h"
 #include "train/state/anchor_masks.h"
 #include "train/state/picture.h"
 #include "train/state/view_subset.h"
@@ -79,7 +78,7 @@ static int generate(ted4_trainer *t, uint32_t item, uint32_t frame, ted4_splats 
                                .den = frames > 1 ? frames - 1 : 1,
                                .activation = t->layout.head.activation };
 
-    ted4_normalise_view(&t->layout.head, &t->data->pictures[item].camera, &v, in.camera);
+    ted4_trainer_view(t, &t->data->pictures[item], &v, in.camera);
     ted4_generator_pack(t->work.generator, t->net.value);
     return ted4_generate(t->work.generator, &in, t->parallel, g) != 0
                ? ted4_trainer_fail(t, "no memory to look at motion")
