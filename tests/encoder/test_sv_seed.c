@@ -12,6 +12,7 @@
 #include "ball_missing.h"
 #include "odd_threads.h"
 #include "train/densify/cell_view.h"
+#include "train/densify/mv_seed.h"
 #include "train/densify/sv_seed.h"
 #include "train/state/picture.h"
 #include "train/step/events.h"
@@ -117,7 +118,7 @@ static void test_found(void **state)
 }
 
 /* One camera that stands still knows no depth: the rays and the times are right all the same. Two
- * cameras a time know it. */
+ * cameras a time know it, but chance matches are frequent; scenes of either kind get no seeding. */
 static void test_other_rigs(void **state)
 {
     (void)state;
@@ -127,7 +128,7 @@ static void test_other_rigs(void **state)
 
         take_turns(1, cameras);
         begin(&t, NULL);
-        assert_true(ted4_sv_seed_applies(&t));
+        assert_false(ted4_sv_seed_applies(&t));
         seed(&t, MANY);
 
         const size_t n = ball_count_short_lived(&t, SPEED, 2.51f / (FRAMES - 1), &near);
@@ -174,6 +175,67 @@ static void test_budget(void **state)
     }
 }
 
+/* Returns the mean of the log-scales of the short-lived anchors. */
+static double mean_log_scale(const ted4_trainer *t)
+{
+    double sum = 0;
+    size_t n = 0;
+
+    for (size_t i = 0; i < t->anchors.n; i++) {
+        if (!ted4_is_short_lived(t, i))
+            continue;
+        sum += (double)*ted4_anchor_value(&t->anchors, TED4_ROW_VALUE, i,
+                                          t->layout.first[TED4_SCALING]);
+        n++;
+    }
+    return sum / (double)n;
+}
+
+/* Few anchors are large, so that they cover what is missing. */
+static void test_sizes(void **state)
+{
+    double size[2];
+
+    (void)state;
+    take_turns(4, 1);
+    for (int few = 0; few < 2; few++) {
+        ted4_trainer t;
+
+        begin(&t, NULL);
+        seed(&t, few ? 40 : MANY);
+        size[few] = mean_log_scale(&t);
+        ted4_trainer_finish(&t);
+    }
+    assert_true(size[1] > size[0] + 1.5);
+    assert_true(size[1] < size[0] + 3.5);
+}
+
+/* If whole pictures are wrong, and there are more pictures than anchors, the anchors are spread
+ * over the sequence. */
+static void test_spread(void **state)
+{
+    ted4_trainer t;
+    size_t halves[2] = { 0, 0 };
+
+    (void)state;
+    take_turns(4, 1);
+    begin(&t, NULL);
+    memset(t.layout.head.background, 255, sizeof t.layout.head.background);
+
+    const size_t before = t.anchors.n;
+
+    seed(&t, 12);
+    assert_true(t.anchors.n > before + 2);
+    assert_true(t.anchors.n <= before + 12);
+    for (size_t i = 0; i < t.anchors.n; i++)
+        if (ted4_is_short_lived(&t, i))
+            halves[*ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, i, t.layout.first[TED4_TAU]) >=
+                   0.45f]++;
+    assert_true(halves[0] > 0);
+    assert_true(halves[1] > 0);
+    ted4_trainer_finish(&t);
+}
+
 /* Seeding takes the anchors that growth leaves, at a fifth of stage 1. */
 static void test_schedule(void **state)
 {
@@ -181,7 +243,7 @@ static void test_schedule(void **state)
     ted4_trainer t;
 
     (void)state;
-    take_turns(1, 1);
+    take_turns(3, 1);
     ball_begin(&t, &o, &balls, NULL);
     ball_train(&t, STEPS - 1);
     assert_int_equal(t.anchors.n + ted4_growth_allowance(&t), 200);
@@ -214,6 +276,31 @@ static void test_not_applied(void **state)
     o.activation = 0;
     ball_begin(&t, &o, &balls, NULL);
     assert_false(ted4_sv_seed_applies(&t));
+    ted4_trainer_finish(&t);
+}
+
+/* With all four cameras, multi-view seeding acts; of two of its anchors in one voxel, not both live
+ * at the other's time. */
+static void test_voxels(void **state)
+{
+    const ted4_train_options o = options();
+    ted4_places list = { 0 };
+    ted4_trainer t;
+
+    (void)state;
+    take_turns(1, 4);
+    ball_begin(&t, &o, &balls, NULL);
+    ball_train(&t, STEPS);
+    assert_true(ted4_mv_seed_applies(&t));
+    for (uint32_t f = 0; f < FRAMES; f++)
+        assert_int_equal(ted4_mv_seed_search(&t, f, &list), 0);
+
+    const size_t before = t.anchors.n;
+
+    assert_int_equal(ted4_mv_seed(&t), 0);
+    assert_true(t.anchors.n > before + 20);
+    ball_check_apart(&t, &list);
+    free(list.item);
     ted4_trainer_finish(&t);
 }
 
@@ -268,6 +355,9 @@ static void test_cells(void **state)
      * into it. Where nothing is rendered, the farthest tested depth stands. */
     assert_true(fabs((double)v.depth[middle] * unit - 3.2) < 0.55);
     assert_true((double)v.depth[0] * unit > 3.75);
+    /* Where something half opaque is rendered, its depth is that of the balls all the same. */
+    for (int i = 0; i < BALL_W * BALL_H; i++)
+        assert_true(v.depth[i] == v.depth[0] || fabs((double)v.depth[i] * unit - 3.2) < 0.55);
     for (int r = 0; r < BALL_H; r += 5)
         for (int c = 0; c < BALL_W; c += 5) {
             ted4_cell_point(&v, c, r, v.depth[r * BALL_W + c], p);
@@ -282,10 +372,11 @@ static void test_cells(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_found),       cmocka_unit_test(test_other_rigs),
-        cmocka_unit_test(test_budget),      cmocka_unit_test(test_schedule),
-        cmocka_unit_test(test_not_applied), cmocka_unit_test(test_threads),
-        cmocka_unit_test(test_cells),
+        cmocka_unit_test(test_found),   cmocka_unit_test(test_other_rigs),
+        cmocka_unit_test(test_budget),  cmocka_unit_test(test_schedule),
+        cmocka_unit_test(test_sizes),   cmocka_unit_test(test_spread),
+        cmocka_unit_test(test_voxels),  cmocka_unit_test(test_not_applied),
+        cmocka_unit_test(test_threads), cmocka_unit_test(test_cells),
     };
 
     return cmocka_run_group_tests_name("sv_seed", tests, set_up_without_blue, tear_down);

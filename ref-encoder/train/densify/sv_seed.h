@@ -5,7 +5,8 @@
  * which the least motion explains what neighbouring pictures show: pictures of the same frame and
  * of those before and after. It is active from the picture before to the picture after. This is not
  * in the paper. It needs activation, and acts only if no frame has as
- * many cameras as multi-view seeding needs (mv_seed.h). Depends on trainer.h, plane_sweep.h.
+ * many cameras as multi-view seeding needs (mv_seed.h), and if the pictures are taken from at least
+ * as many distinct viewpoints. Depends on trainer.h, plane_sweep.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_SV_SEED_H
 #define TED4_SV_SEED_H
