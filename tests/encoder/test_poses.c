@@ -443,6 +443,32 @@ static void test_off(void **state)
     ted4_trainer_finish(&t);
 }
 
+/* All cameras turned aside by the same angle, which no motion of the scene can hide: its points
+ * move by the focal length times the angle, and a little more beside the centre. */
+static void test_limit(void **state)
+{
+    static const float angle[] = { 0.005f, 0.01f };
+    const ted4_train_options o = options();
+
+    (void)state;
+    for (int wrong = 0; wrong < 2; wrong++) {
+        ted4_trainer t;
+
+        ball_begin(&t, &o, &balls, NULL);
+        t.iteration = DECIDED - 1;
+        for (size_t i = 0; i < t.poses.n; i++)
+            t.poses.value[i][1] = angle[wrong];
+        ted4_poses_decide(&t);
+        assert_int_equal(t.poses.decision, TED4_POSES_ON_TRIAL);
+        t.iteration = DECIDED;
+        ted4_poses_decide(&t);
+        assert_int_equal(t.poses.decision, wrong ? TED4_POSES_REFINED : TED4_POSES_GIVEN);
+        assert_true(t.poses.moved > BALL_FOCAL * (double)angle[wrong]);
+        assert_true(t.poses.moved < 1.15 * BALL_FOCAL * (double)angle[wrong]);
+        ted4_trainer_finish(&t);
+    }
+}
+
 /* Several pictures of one pose in one step: the gradients add up, and it is one step of Adam. */
 static void test_batch(void **state)
 {
@@ -492,6 +518,7 @@ int main(void)
         cmocka_unit_test(test_gauge),   cmocka_unit_test(test_right),
         cmocka_unit_test(test_wrong),   cmocka_unit_test(test_resumed),
         cmocka_unit_test(test_off),     cmocka_unit_test(test_batch),
+        cmocka_unit_test(test_limit),
     };
 
     return cmocka_run_group_tests_name("poses", tests, set_up, tear_down);
