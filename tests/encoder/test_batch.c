@@ -89,6 +89,30 @@ static void test_even_batches(void **state)
     ted4_trainer_finish(&t);
 }
 
+/* With batches that hold all pictures of a time, each round goes through the times in another
+ * order: of 20 rounds, about a fifth begin with any one of the five times. */
+static void test_order_of_times(void **state)
+{
+    const ted4_train_options o = options(BALL_CAMERAS);
+    unsigned begins[FRAMES] = { 0 };
+    ted4_trainer t;
+
+    (void)state;
+    ball_begin(&t, &o, &balls, NULL);
+    for (int round = 0; round < 20; round++)
+        for (uint32_t taken = 0; taken < t.order.n;) {
+            const uint32_t *item;
+            size_t n;
+
+            assert_int_equal(ted4_next_pictures(&t, &item, &n), 0);
+            begins[balls.pictures[item[0]].frame] += taken == 0;
+            taken += (uint32_t)n;
+        }
+    for (int frame = 0; frame < FRAMES; frame++)
+        assert_in_range(begins[frame], 0, 12);
+    ted4_trainer_finish(&t);
+}
+
 /* ---- sums ---- */
 
 enum { N_VALUES = 20000 };
@@ -367,11 +391,11 @@ static void test_full_view(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_order),         cmocka_unit_test(test_even_batches),
-        cmocka_unit_test(test_sums),          cmocka_unit_test(test_gradients),
-        cmocka_unit_test(test_other_anchors), cmocka_unit_test(test_rates),
-        cmocka_unit_test(test_threads),       cmocka_unit_test(test_resume),
-        cmocka_unit_test(test_full_view),
+        cmocka_unit_test(test_order),          cmocka_unit_test(test_even_batches),
+        cmocka_unit_test(test_order_of_times), cmocka_unit_test(test_sums),
+        cmocka_unit_test(test_gradients),      cmocka_unit_test(test_other_anchors),
+        cmocka_unit_test(test_rates),          cmocka_unit_test(test_threads),
+        cmocka_unit_test(test_resume),         cmocka_unit_test(test_full_view),
     };
 
     return cmocka_run_group_tests_name("batches of views", tests, set_up, tear_down);
