@@ -29,7 +29,7 @@ times='train_s stage1_s cpu_s stage1_cpu_s decode_ms render_fps integer_ms float
 in_way() {
     way=$1
     shift
-    TED4_RESULTS=$out/$way TED4_WORK=$out/$way/work "$@" >>"$out/$way.said" 2>&1
+    TED4_RESULTS=$out/$way TED4_WORK=$out/$way/kept "$@" >>"$out/$way.said" 2>&1
 }
 
 # The table of a way without its columns of times.
@@ -46,7 +46,7 @@ without_times() {
 same() {
     without_times "$1" >"$out/$1.rows"
     differ=$(diff "$out/one.rows" "$out/$1.rows") && [ "$(wc -l <"$out/$1.rows")" = 13 ] &&
-        [ -z "$(ls "$out/$1/work/rows")" ] ||
+        [ -z "$(ls "$out/$1/kept/rows")" ] ||
         { fail "$2" "$differ $(tail -n 20 "$out/$1.said")"; return 1; }
     for row in $(find "$out/$1.before" -name '*.row' 2>/dev/null); do
         grep -qxF -e "$(cat "$row")" "$out/$1/sweep.csv" ||
@@ -84,7 +84,7 @@ kill_when() {
     rows="$(count_rows "$1") rows in files, $(count_merged "$1") merged"
     echo "result: $1: kill -9 of the $2, with $rows"
 }
-count_rows() { find "$out/$1/work/rows" -name '*.row' 2>/dev/null | wc -l; }
+count_rows() { find "$out/$1/kept/rows" -name '*.row' 2>/dev/null | wc -l; }
 count_merged() { sed 1d "$out/$1/sweep.csv" 2>/dev/null | wc -l; }
 
 # ---- one process, a run after the other ----
@@ -116,7 +116,7 @@ disturbed() {
     kill_when "$way" driver 'bench/cluster/[a-z]*\.sh sweep|^perl |sbatch' \
         '[ "$(count_rows $way)" -ge 6 ]'
     wait $driver
-    cp -r "$out/$way/work/rows" "$out/$way.before"
+    cp -r "$out/$way/kept/rows" "$out/$way.before"
     $go_on "$way" "$@"
     in_way "$way" "$@" && same "$way" "$way" "$(since "$began")" ||
         fail "$way" "$(tail -n 20 "$out/$way.said")"
