@@ -175,10 +175,12 @@ static void gather(const ted4_trainer *t, const ted4_splats *g, float weight, su
             const size_t i = t->visible_blocks.block[b] * (size_t)TED4_LANES + j;
             float change = 0;
 
+            if (!(t->visible_blocks.lanes[b] >> j & 1))
+                continue; /* may be one of the last block's lanes behind the last anchor */
             for (size_t k = 0; k < K; k++) {
                 const size_t at = (b * K + k) * TED4_LANES + j;
 
-                if (!(t->visible_blocks.lanes[b] >> j & 1) || !d->visible[at])
+                if (!d->visible[at])
                     continue;
                 s->seen[i] = 1;
                 for (size_t p = 0; p < PARTS; p++)
