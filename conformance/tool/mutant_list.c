@@ -319,3 +319,18 @@ size_t conf_mutant_count(const conf_mutant_list *l, const char *verdict)
         n += strcmp(l->m[i].verdict, verdict) == 0;
     return n;
 }
+
+void conf_mutant_print_counts(const conf_mutant_list *l, int complete, conf_bytes *out)
+{
+    const size_t killed = conf_mutant_count(l, "killed"),
+                 survived = conf_mutant_count(l, "survived"), judged = killed + survived;
+    char share[16] = "";
+
+    if (complete && judged > 0)
+        snprintf(share, sizeof share, " (%.1f %%)", 100.0 * (double)killed / (double)judged);
+    conf_print(out,
+               "| | |\n|---|---|\n| mutants | %zu |\n| judged | %zu |\n| killed | %zu%s |\n"
+               "| survived | %zu |\n| do not compile | %zu |\n| not run | %zu |\n",
+               l->n, judged, killed, share, survived, conf_mutant_count(l, "no compile"),
+               conf_mutant_count(l, ""));
+}

@@ -65,5 +65,8 @@ void conf_mutant_results_add(const conf_mutant_list *l, const conf_mutant *m, co
 void conf_mutant_results_keep(const conf_mutant_list *l, const char *suite);
 /* Returns the number of mutants with that verdict. */
 size_t conf_mutant_count(const conf_mutant_list *l, const char *verdict);
+/* Appends the table of counts to out. complete: all that can be judged is judged, so that the share
+ * of kills is one of the whole list: kills stay valid longer than survivals. */
+void conf_mutant_print_counts(const conf_mutant_list *l, int complete, conf_bytes *out);
 
 #endif

@@ -270,17 +270,11 @@ static int write_report(const campaign *c)
     const int good = judged >= LEAST_MUTANTS && 100 * killed >= LEAST_PERCENT * judged &&
                      judged + lacking == l->n;
     conf_bytes b = { NULL, 0, 0 };
-    char path[CONF_PATH], share[16] = "";
+    char path[CONF_PATH];
 
-    /* Kills stay valid longer than survivals, so that the share of a part of the list would be too
-     * high. */
-    if (judged + lacking == l->n && judged > 0)
-        snprintf(share, sizeof share, " (%.1f %%)", 100.0 * (double)killed / (double)judged);
-    conf_print(&b,
-               "%s\n| | |\n|---|---|\n| mutants | %zu |\n| judged | %zu |\n| killed | %zu%s |\n"
-               "| survived | %zu |\n| do not compile | %zu |\n| not run | %zu |\n\n",
-               introduction, l->n, judged, killed, share, survived,
-               conf_mutant_count(l, "no compile"), conf_mutant_count(l, ""));
+    conf_print(&b, "%s\n", introduction);
+    conf_mutant_print_counts(l, judged + lacking == l->n, &b);
+    conf_print(&b, "\n");
     print_places(l, &b);
     print_mutants(l, &b);
     conf_path(path, "%s/MUTANTS.md", c->o->suite);

@@ -55,19 +55,7 @@ static worth weigh(ted4_trainer *t)
     assert_int_equal(ted4_opacity_sensitivity(t, w.use), 0);
     assert_int_equal(ted4_visible_blocks_fill(t, NULL), 0);
 
-    const ted4_rate_input in = { &t->layout,
-                                 t->net.value,
-                                 t->net.shift,
-                                 t->visible_blocks.n,
-                                 t->visible_blocks.raw,
-                                 t->visible_blocks.position,
-                                 t->visible_blocks.lanes,
-                                 t->visible_blocks.block,
-                                 0,
-                                 TED4_QUANT_INTEGER,
-                                 0.0f,
-                                 0.0f,
-                                 t->layout.head.activation };
+    const ted4_rate_input in = ted4_visible_blocks_rate(t);
 
     assert_int_equal(ted4_rate_lanes(t->work.rate, &in, NULL, t->visible_blocks.steps, w.bits), 0);
     return w;

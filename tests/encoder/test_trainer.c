@@ -354,19 +354,7 @@ static void test_rate(void **state)
     ted4_scene_free(s);
     assert_int_equal(ted4_visible_blocks_fill(&t, NULL), 0);
 
-    const ted4_rate_input in = { &t.layout,
-                                 t.net.value,
-                                 t.net.shift,
-                                 t.visible_blocks.n,
-                                 t.visible_blocks.raw,
-                                 t.visible_blocks.position,
-                                 t.visible_blocks.lanes,
-                                 t.visible_blocks.block,
-                                 0,
-                                 TED4_QUANT_INTEGER,
-                                 0.0f,
-                                 0.0f,
-                                 1 };
+    const ted4_rate_input in = ted4_visible_blocks_rate(&t);
 
     ted4_rate_pack(t.work.rate, t.net.value);
     assert_int_equal(ted4_rate_evaluate(t.work.rate, &in, NULL, NULL, NULL, NULL,

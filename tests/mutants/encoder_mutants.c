@@ -376,15 +376,10 @@ static int write_page(const campaign *c)
     const int good = judged == l->n && judged >= LEAST_MUTANTS &&
                      100 * killed >= LEAST_PERCENT * judged;
     conf_bytes b = { NULL, 0, 0 };
-    char path[CONF_PATH], share[16] = "";
+    char path[CONF_PATH];
 
-    if (judged == l->n && judged > 0)
-        snprintf(share, sizeof share, " (%.1f %%)", 100.0 * (double)killed / (double)judged);
-    conf_print(&b,
-               "%s\n| | |\n|---|---|\n| mutants | %zu |\n| judged | %zu |\n| killed | %zu%s |\n"
-               "| survived | %zu |\n| do not compile | %zu |\n| not run | %zu |\n",
-               introduction, l->n, judged, killed, share, survived,
-               conf_mutant_count(l, "no compile"), conf_mutant_count(l, ""));
+    conf_print(&b, "%s\n", introduction);
+    conf_mutant_print_counts(l, judged == l->n, &b);
     print_areas(l, &b);
     print_others(l, &b);
     conf_path(path, "%s/MUTANTS.md", c->folder);

@@ -46,19 +46,7 @@ static int learn(ted4_trainer *t, worth *w)
     if (ted4_opacity_sensitivity(t, w->use) != 0 || ted4_visible_blocks_fill(t, NULL) != 0)
         return -1;
 
-    const ted4_rate_input in = { &t->layout,
-                                 t->net.value,
-                                 t->net.shift,
-                                 t->visible_blocks.n,
-                                 t->visible_blocks.raw,
-                                 t->visible_blocks.position,
-                                 t->visible_blocks.lanes,
-                                 t->visible_blocks.block,
-                                 0,
-                                 TED4_QUANT_INTEGER,
-                                 0.0f,
-                                 0.0f,
-                                 t->layout.head.activation };
+    const ted4_rate_input in = ted4_visible_blocks_rate(t);
 
     return ted4_rate_lanes(t->work.rate, &in, t->parallel, t->visible_blocks.steps, w->bits) != 0
                ? ted4_trainer_fail(t, "no memory to weigh anchors")

@@ -81,6 +81,22 @@ static int reserve(ted4_trainer *t, size_t n)
     return 0;
 }
 
+ted4_rate_input ted4_visible_blocks_rate(const ted4_trainer *t)
+{
+    const ted4_visible_blocks *s = &t->visible_blocks;
+
+    return (ted4_rate_input) { .layout = &t->layout,
+                               .net = t->net.value,
+                               .shift = t->net.shift,
+                               .n_visible = s->n,
+                               .attr = s->raw,
+                               .position = s->position,
+                               .lanes = s->lanes,
+                               .block = s->block,
+                               .quant = TED4_QUANT_INTEGER,
+                               .activation = t->layout.head.activation };
+}
+
 void ted4_visible_blocks_finish(ted4_visible_blocks *s)
 {
     free(s->block);

@@ -17,6 +17,9 @@ int ted4_visible_blocks_of(ted4_trainer *t, const ted4_view *v, size_t n);
 /* In stage 2, fills t->visible_blocks.used from the current values and step sizes. In stage 1, used
  * is the same as raw. */
 void ted4_visible_blocks_quantise(ted4_trainer *t, ted4_quant quant);
+/* Returns the input of rate/rate.h for all of t->visible_blocks in the integer stage, without
+ * gradients. It is valid until t->visible_blocks is filled again. */
+ted4_rate_input ted4_visible_blocks_rate(const ted4_trainer *t);
 /* Frees the buffers. */
 void ted4_visible_blocks_finish(ted4_visible_blocks *s);
 

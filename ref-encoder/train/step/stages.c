@@ -362,19 +362,7 @@ int ted4_integer_rate(ted4_trainer *t, double *bits)
     if (ted4_visible_blocks_fill(t, NULL) != 0)
         return -1;
 
-    const ted4_rate_input in = { &t->layout,
-                                 t->net.value,
-                                 t->net.shift,
-                                 t->visible_blocks.n,
-                                 t->visible_blocks.raw,
-                                 t->visible_blocks.position,
-                                 t->visible_blocks.lanes,
-                                 t->visible_blocks.block,
-                                 0,
-                                 TED4_QUANT_INTEGER,
-                                 0.0f,
-                                 0.0f,
-                                 t->layout.head.activation };
+    const ted4_rate_input in = ted4_visible_blocks_rate(t);
 
     return ted4_rate_evaluate(t->work.rate, &in, t->parallel, NULL, NULL, NULL,
                               t->visible_blocks.steps, bits) != 0
