@@ -8,7 +8,7 @@ set -u
 LC_ALL=C; export LC_ALL
 unset TED4_WORK
 . tests/support/speak.sh
-need merges sweep python3
+need merges python3
 command -v setsid >/dev/null || { skip merges "there is no setsid"; exit 0; }
 [ -d "$out" ] || exit 1
 . tests/support/sweep_stand_ins.sh
