@@ -219,8 +219,8 @@ TED4_ALWAYS void end_row(row *r)
  * Returns 1, or 0 with nothing changed if words are missing. */
 TED4_ALWAYS int take(ted4_gauss_lanes *d, const row *r, unsigned lanes)
 {
-    const vi y = (vi)((vu)(r->s.to - r->s.from) * ((vu)r->x >> TED4_SLOT_BITS)) + r->slot -
-                 r->s.from;
+    const vi y = (vi)((vu)(r->s.to - r->s.from) * ((vu)r->x >> TED4_SLOT_BITS) + (vu)r->slot -
+                      (vu)r->s.from);
     const mask low = equal((vi)((vu)y >> TED4_SLOT_BITS), all(0));
     const unsigned wants = bits_of(low) & lanes;
     const size_t left = (size_t)(d->end - d->word), used = 2 * (size_t)__builtin_popcount(wants);

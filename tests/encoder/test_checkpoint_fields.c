@@ -98,7 +98,7 @@ static void fill_parameters(ted4_trainer *t)
 static void begin(ted4_trainer *t)
 {
     ball_begin(t, &options, &balls, NULL);
-    assert_int_equal(ted4_snapshot_take(t, &t->monitor.good), 0);
+    assert_int_equal(ted4_state_take(t, &t->monitor.good), 0);
     t->monitor.good_at = 11;
     fill_parameters(t);
     fill_monitor(&t->monitor.state);
