@@ -12,13 +12,13 @@
 #include <time.h>
 #include <unistd.h>
 
-#include <jansson.h>
-
 #include "align.h"
 #include "belongs.h"
 #include "camera_view.h"
 #include "data/dataset.h"
 #include "eval/metrics.h"
+#include "eval_result.h"
+#include "fit_colours.h"
 #include "render/png_file.h"
 #include "render/view.h"
 #include "sheet.h"
@@ -40,6 +40,7 @@ enum {
     OPT_SHEET,
     OPT_THREADS,
     OPT_ALIGN,
+    OPT_COLOURS,
     OPT_ANYWAY,
     OPT_FORCE,
     OPT_JSON,
@@ -69,6 +70,8 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
     [OPT_THREADS] = { 'j', "threads", "N", "threads; 0: all cores. Default 0" },
     [OPT_ALIGN] = { 0, "align", NULL,
                     "also fit each picture's pose on half of it, judge the other" },
+    [OPT_COLOURS] = { 0, "colours", NULL,
+                      "also fit each camera's colours on its training pictures" },
     [OPT_ANYWAY] = { 0, "anyway", NULL, "compare also where the file cannot be of this scene" },
     [OPT_FORCE] = { 'f', "force", NULL, "overwrite pictures" },
     [OPT_JSON] = { 0, "json", NULL, "result as one JSON object" },
@@ -98,15 +101,9 @@ typedef struct {
     const char *hold_out[MAX_HOLD_OUT];
     size_t n_hold_out;
     int premultiplied;
-    int want_test, downscale, max_frames, threads, align, anyway, force, json, quiet, verbose;
+    int want_test, downscale, max_frames, threads;
+    int align, colours, anyway, force, json, quiet, verbose;
 } settings;
-
-/* Sums over pictures; results are divided by views. */
-typedef struct {
-    double psnr, ssim, ssim2, ms_ssim, l1, render_s, decode_ms;
-    double given, aligned; /* PSNR of the half that --align judges, before and after the fit */
-    size_t views, bytes;
-} totals;
 
 typedef struct {
     const settings *set;
@@ -117,7 +114,8 @@ typedef struct {
     ted4_dataset data;
     size_t row[SHEET_ROWS]; /* index of the picture in each row of the sheet */
     ted4_sheet sheet;
-    totals sum;
+    ted4_fitted_colours *colours; /* [data.n_cameras], or NULL without --colours */
+    ted4_eval_sums sum;
     ted4_belongs_sum squares;
 } session;
 
@@ -184,8 +182,9 @@ static int set_option(settings *s, int option, const char *value)
     default: break;
     }
     int *const flag[N_OPTIONS] = {
-        [OPT_ALIGN] = &s->align, [OPT_ANYWAY] = &s->anyway, [OPT_FORCE] = &s->force,
-        [OPT_JSON] = &s->json,   [OPT_QUIET] = &s->quiet,   [OPT_VERBOSE] = &s->verbose
+        [OPT_ALIGN] = &s->align,    [OPT_COLOURS] = &s->colours, [OPT_ANYWAY] = &s->anyway,
+        [OPT_FORCE] = &s->force,    [OPT_JSON] = &s->json,       [OPT_QUIET] = &s->quiet,
+        [OPT_VERBOSE] = &s->verbose
     };
 
     *flag[option] = 1;
@@ -417,33 +416,70 @@ static int align_picture(session *s, const ted4_picture *p, const uint8_t *truth
     return TED4_EXIT_FINE;
 }
 
+/* Draws picture i as the file shows it. user: the session. Returns an exit code. */
+static int draw_picture(void *user, size_t i, uint8_t *rgb)
+{
+    const session *const s = user;
+    const ted4_view view = ted4_view_of_camera(&s->data.pictures[i].camera);
+    const uint32_t last = s->data.n_frames > 1 ? s->data.n_frames - 1 : 1;
+    const ted4_error e = { ted4_render_query(s->viewer, s->recon, &s->info,
+                                             s->data.pictures[i].frame, last, &view, &s->parallel,
+                                             rgb),
+                           0 };
+
+    if (e.code == TED4_OK)
+        return TED4_EXIT_FINE;
+    ted4_teller_clear(&teller);
+    return ted4_report("ted4eval", s->set->input, &e, s->set->json);
+}
+
+/* Judges a picture through the map of its camera. */
+static void judge_colours(session *s, const ted4_picture *p, const uint8_t *truth,
+                          const uint8_t *ours)
+{
+    static const ted4_colour_map identity = { 0 };
+    const ted4_fitted_colours *const f = &s->colours[p->camera_id];
+    const size_t pixels = (size_t)p->camera.width * (size_t)p->camera.height;
+
+    if (f->pictures == 0)
+        return;
+
+    const double raw = ted4_fitted_psnr(identity, truth, ours, pixels),
+                 fitted = ted4_fitted_psnr(f->map, truth, ours, pixels);
+
+    s->sum.raw += raw;
+    s->sum.fitted += fitted;
+    s->sum.fitted_views++;
+    if (s->set->verbose)
+        fprintf(stderr, "%s frame %" PRIu32 ": raw %.4f fitted %.4f\n", p->path, p->frame, raw,
+                fitted);
+}
+
 static int evaluate_picture(session *s, size_t i)
 {
     const ted4_picture *const p = &s->data.pictures[i];
-    const ted4_view view = ted4_view_of_camera(&p->camera);
-    const uint32_t last = s->data.n_frames > 1 ? s->data.n_frames - 1 : 1;
-    uint8_t *const ours = malloc((size_t)view.width * (size_t)view.height * 3);
+    uint8_t *const ours = malloc((size_t)p->camera.width * (size_t)p->camera.height * 3);
     ted4_message m;
     const uint8_t *truth;
     double start;
-    ted4_error e = { TED4_E_LIMIT_MEMORY, 0 };
     int code;
 
+    if (ours == NULL)
+        return failed(p->path, "out of memory");
     start = seconds();
-    if (ours != NULL)
-        e.code = ted4_render_query(s->viewer, s->recon, &s->info, p->frame, last, &view,
-                                   &s->parallel, ours);
+    code = draw_picture(s, i, ours);
     s->sum.render_s += seconds() - start;
-    if (e.code != TED4_OK) {
-        ted4_teller_clear(&teller);
-        code = ted4_report("ted4eval", s->set->input, &e, s->set->json);
-    } else if ((truth = ted4_dataset_pixels(&s->data, i, &m)) == NULL) {
-        code = failed(p->path, m.text);
-    } else {
-        code = take_picture(s, i, truth, ours);
-        if (code == TED4_EXIT_FINE && s->set->align)
-            code = align_picture(s, p, truth, ours);
-        ted4_dataset_release(&s->data, i);
+    if (code == TED4_EXIT_FINE) {
+        if ((truth = ted4_dataset_pixels(&s->data, i, &m)) == NULL) {
+            code = failed(p->path, m.text);
+        } else {
+            code = take_picture(s, i, truth, ours);
+            if (code == TED4_EXIT_FINE && s->set->colours)
+                judge_colours(s, p, truth, ours);
+            if (code == TED4_EXIT_FINE && s->set->align)
+                code = align_picture(s, p, truth, ours);
+            ted4_dataset_release(&s->data, i);
+        }
     }
     free(ours);
     return code;
@@ -451,41 +487,34 @@ static int evaluate_picture(session *s, size_t i)
 
 /* ---- the whole ---- */
 
-/* Returns null for a metric that is infinite or undefined (its window exceeds the picture). */
-static json_t *number(double v)
+/* Fits the colours of the cameras of the split, and says whose cannot be fitted. */
+static int fit_colours(session *s)
 {
-    return isfinite(v) ? json_real(v) : json_null();
-}
+    size_t cameras = 0, views = 0;
+    ted4_message m;
+    int code;
 
-static void print_result(const session *s)
-{
-    const totals *const t = &s->sum;
-    const double n = (double)t->views;
+    s->colours = calloc(s->data.n_cameras, sizeof *s->colours);
+    if (s->colours == NULL)
+        return failed(s->set->scene, "out of memory");
+    code = ted4_fit_colours(&s->data, s->set->want_test, draw_picture, s, s->colours, &m);
+    if (code != 0)
+        return code < 0 ? complain(m.text) : code;
+    for (uint32_t k = 0; k < s->data.n_cameras; k++) {
+        size_t n = 0;
 
-    if (!s->set->json) {
-        printf("psnr       %.4f dB\nssim       %.5f\nssim2      %.5f\nms_ssim    %.5f\nbytes      "
-               "%zu\ndecode     %.2f ms\nrender     %.2f fps\nviews      %zu\n",
-               t->psnr / n, t->ssim / n, t->ssim2 / n, t->ms_ssim / n, t->bytes, t->decode_ms,
-               n / t->render_s, t->views);
-        if (s->set->align)
-            printf("half       %.4f dB\naligned    %.4f dB\n", t->given / n, t->aligned / n);
-        return;
+        for (size_t i = 0; i < s->data.n_pictures && s->colours[k].pictures == 0; i++)
+            n += s->data.pictures[i].camera_id == k && in_split(s, i);
+        cameras += n > 0;
+        views += n;
     }
-    json_t *const o = json_pack(
-        "{s:o, s:o, s:o, s:o, s:o, s:I, s:o, s:o, s:I, s:s, s:I, s:I, s:I}", "psnr",
-        number(t->psnr / n), "ssim", number(t->ssim / n), "ssim2", number(t->ssim2 / n), "ms_ssim",
-        number(t->ms_ssim / n), "l1", number(t->l1 / n), "bytes", (json_int_t)t->bytes, "decode_ms",
-        number(t->decode_ms), "render_fps", number(n / t->render_s), "views", (json_int_t)t->views,
-        "split", s->set->want_test ? "test" : "train", "frames", (json_int_t)s->info.frames,
-        "anchors", (json_int_t)s->info.n_anchors, "gaussians", (json_int_t)s->info.n_gaussians);
-
-    if (s->set->align) {
-        json_object_set_new(o, "psnr_half", number(t->given / n));
-        json_object_set_new(o, "psnr_aligned", number(t->aligned / n));
-    }
-    json_dumpf(o, stdout, JSON_COMPACT | JSON_REAL_PRECISION(6));
-    putchar('\n');
-    json_decref(o);
+    ted4_teller_clear(&teller);
+    if (cameras > 0)
+        fprintf(stderr,
+                "ted4eval: warning: %zu of these pictures are by %zu cameras without training "
+                "pictures: their colours cannot be fitted\n",
+                views, cameras);
+    return TED4_EXIT_FINE;
 }
 
 static int evaluate(session *s)
@@ -508,6 +537,8 @@ static int evaluate(session *s)
         return failed(set->images, strerror(errno));
     if (set->sheet != NULL)
         code = choose_rows(s);
+    if (code == TED4_EXIT_FINE && set->colours)
+        code = fit_colours(s);
     for (size_t i = 0; i < s->data.n_pictures && code == TED4_EXIT_FINE; i++) {
         if (!in_split(s, i))
             continue;
@@ -522,7 +553,9 @@ static int evaluate(session *s)
     if (code == TED4_EXIT_FINE)
         code = refuse_pair(s, ted4_belongs_pictures(&s->squares, why, sizeof why), why);
     if (code == TED4_EXIT_FINE)
-        print_result(s);
+        ted4_eval_print(&s->sum, &s->info,
+                        &(ted4_eval_style) { set->want_test ? "test" : "train", set->json,
+                                             set->align, set->colours });
     return code;
 }
 
@@ -546,6 +579,7 @@ int main(int argc, char **argv)
         code = evaluate(&s);
     ted4_sheet_finish(&s.sheet);
     ted4_viewer_free(s.viewer);
+    free(s.colours);
     ted4_dataset_free(&s.data);
     ted4_recon_free(s.recon);
     ted4_threads_finish(&s.parallel);

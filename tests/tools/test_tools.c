@@ -362,6 +362,26 @@ static void check_aligned(double psnr)
     assert_non_null(strstr(out, "aligned    "));
 }
 
+/* A map of colours explains that pictures are brighter, if its camera has training pictures. psnr:
+ * of the pictures without it. */
+static void check_colours(double psnr)
+{
+    assert_int_equal(run("ted4eval v1.ted4 scene --anyway --json --colours"), 0);
+    assert_true(result("psnr") == psnr);
+    assert_true(fabs(result("psnr_raw") - psnr) < 1e-3);
+    assert_true(result("psnr_fitted") > psnr + 1.0);
+    assert_true(result("views_fitted") == VIEWS);
+    assert_int_equal(run("ted4eval v1.ted4 scene --anyway --colours --hold-out p0"), 0);
+    assert_non_null(strstr(out, "of         0 views"));
+    assert_null(strstr(out, "fitted "));
+    assert_int_equal(run("ted4eval v1.ted4 scene --anyway --json --colours --hold-out p0"), 0);
+    assert_true(result("views_fitted") == 0);
+    assert_true(result("psnr_fitted") == -1.0); /* null */
+    assert_int_equal(run("ted4eval v1.ted4 scene --anyway --colours --hold-out p0 2>&1 | "
+                         "grep -c 'by 1 cameras without training pictures'"),
+                     0);
+}
+
 /* Pictures that differ from what the file shows by one step everywhere. */
 static void test_eval(void **state)
 {
@@ -403,7 +423,11 @@ static void test_eval(void **state)
     assert_true(result("decode_ms") > 0.0);
     assert_true(result("render_fps") > 0.0);
     assert_true(result("psnr_aligned") < 0);
-    check_aligned(result("psnr"));
+    assert_true(result("psnr_fitted") < 0);
+    const double psnr = result("psnr");
+
+    check_aligned(psnr);
+    check_colours(psnr);
     path_of(path, "sheet.png");
     assert_int_equal(ted4_image_probe(path, &sheet, &m), 0);
     assert_int_equal(sheet.width, 3 * WIDTH);

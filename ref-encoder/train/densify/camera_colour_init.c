@@ -14,6 +14,7 @@
 
 #include "math/elementary.h"
 #include "photo_votes.h"
+#include "train/loss/colour_fit.h"
 #include "train/model/normalise.h"
 
 /* At most so many pictures of a camera are used. What the camera sees at a point is their median,
@@ -32,9 +33,6 @@ enum { ROUNDS = 8 };
 /* If the cameras differ by less than this, of 255, the difference may be noise of the fit
  * (measured: 0.2 to 1 where no camera has a tint), and the maps are not used. */
 #define ALIKE     2.0
-/* Regularisation towards the identity, as a share of the weights: the square of noise of a few
- * levels of 255. */
-#define RIDGE     1e-4
 /* If the gain of the initial points is larger than this, or smaller than its inverse, their
  * colours do not come from the pictures, but are, for example, albedo or linear light. */
 #define MOST_GAIN 1.25
@@ -224,13 +222,8 @@ static void find_points(match *m, const undo *back)
         }
 }
 
-/* The normal equations: sums, over the points that a camera sees, of the products of (r, g, b, 1)
- * with itself and with the colours that the camera sees. */
-typedef struct {
-    double left[4][4], right[4][3], weight;
-} normal;
-
-static void add_points(const match *m, size_t camera, const float *map, double width, normal *s)
+static void add_points(const match *m, size_t camera, const float *map, double width,
+                       ted4_colour_sums *s)
 {
     memset(s, 0, sizeof *s);
     for (size_t i = 0; i < m->n; i++) {
@@ -260,47 +253,15 @@ static void add_points(const match *m, size_t camera, const float *map, double w
     }
 }
 
-/* Solves left * solution = right by Cholesky decomposition, in place of right. left must be
- * positive definite. */
-static void solve(normal *s)
-{
-    double(*a)[4] = s->left, (*b)[3] = s->right;
-
-    for (int j = 0; j < 4; j++)
-        for (int i = j; i < 4; i++) {
-            for (int k = 0; k < j; k++)
-                a[i][j] -= a[i][k] * a[j][k];
-            a[i][j] = i == j ? sqrt(a[i][j]) : a[i][j] / a[j][j];
-        }
-    for (int c = 0; c < 3; c++) {
-        for (int i = 0; i < 4; i++) {
-            for (int k = 0; k < i; k++)
-                b[i][c] -= a[i][k] * b[k][c];
-            b[i][c] /= a[i][i];
-        }
-        for (int i = 3; i >= 0; i--) {
-            for (int k = i + 1; k < 4; k++)
-                b[i][c] -= a[k][i] * b[k][c];
-            b[i][c] /= a[i][i];
-        }
-    }
-}
-
 /* Fits the map of one camera. Leaves it unchanged if the camera sees too few points. */
 static void fit(const match *m, size_t camera, double width)
 {
     float *map = m->t->colour.value[camera];
-    normal s;
+    ted4_colour_sums s;
 
     add_points(m, camera, map, width, &s);
-    if (s.weight < FEWEST)
-        return;
-    for (int i = 0; i < 4; i++)
-        s.left[i][i] += RIDGE * s.weight;
-    solve(&s);
-    for (int r = 0; r < 4; r++)
-        for (int c = 0; c < 3; c++)
-            map[3 * r + c] = (float)s.right[r][c];
+    if (s.weight >= FEWEST)
+        ted4_colour_solve(&s, map);
 }
 
 /* Computes the colours of the points from the current maps. */

@@ -14,8 +14,9 @@
 #include "base/parallel.h"
 #include "data/dataset.h"
 
-/* Values of one camera: A by rows (row: input colour, column: output colour), then v. */
-enum { TED4_COLOUR_VALUES = 12 };
+/* Values of one camera: A by rows (row: input colour, column: output colour), then, from
+ * TED4_COLOUR_ROW_V on, v. */
+enum { TED4_COLOUR_VALUES = 12, TED4_COLOUR_ROW_V = 9 };
 
 typedef float ted4_colour_map[TED4_COLOUR_VALUES];
 

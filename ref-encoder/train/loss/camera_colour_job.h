@@ -7,9 +7,8 @@
 #include "camera_colour.h"
 #include "render/leveled.h"
 
-/* Number of pixels whose products are summed in single precision, number of pixels of one job, and
- * index of v in a map. */
-enum { TED4_COLOUR_RUN = 1024, TED4_COLOUR_BAND = 16 * TED4_COLOUR_RUN, TED4_COLOUR_ROW_V = 9 };
+/* Number of pixels whose products are summed in single precision, and of pixels of one job. */
+enum { TED4_COLOUR_RUN = 1024, TED4_COLOUR_BAND = 16 * TED4_COLOUR_RUN };
 
 typedef struct {
     const float *image, *map;
