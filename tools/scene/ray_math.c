@@ -33,6 +33,16 @@ double ted4_ray_cos(double turns)
     return ted4_ray_sin(turns + 0.25);
 }
 
+double ted4_ray_exp2(double x)
+{
+    const double y = 0.69314718055994531 * x;
+    double s = 1;
+
+    for (int k = 20; k > 0; k--)
+        s = 1 + s * y / k;
+    return s;
+}
+
 float ted4_ray_atan2(float y, float x)
 {
     const float ax = fabsf(x), ay = fabsf(y);

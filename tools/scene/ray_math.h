@@ -105,6 +105,8 @@ static inline vec3 ray_unrotate(const float m[9], vec3 v)
  * error of about 1e-15. */
 double ted4_ray_sin(double turns);
 double ted4_ray_cos(double turns);
+/* Returns 2^x for |x| <= 2, with a relative error of about 1e-14. */
+double ted4_ray_exp2(double x);
 /* Returns the angle of (x, y) in radians, in (-pi, pi], with an error of about 2e-7. */
 float ted4_ray_atan2(float y, float x);
 

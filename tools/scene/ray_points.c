@@ -124,7 +124,7 @@ static int sees_still(const ted4_ray_options *o, const ted4_ray_sight *s, int fr
 
 /* Finds a point on what never moves. It lies off its surface by as much as other points, and along
  * the camera's ray by up to depth_noise, since cameras tell directions better than depths. Its
- * colour is the one that the camera takes, with the camera's tint. This ends because
+ * colour is the one that the camera takes, with the camera's tint and exposure. This ends because
  * every scene has things that stand still. */
 static ted4_ray_point motion_point(const ted4_ray_options *o, int i)
 {
@@ -138,6 +138,7 @@ static ted4_ray_point motion_point(const ted4_ray_options *o, int i)
         s = random_sight(o, seed, i, attempt++, &p);
     } while (!isfinite(s.depth) || !sees_still(o, &s, p.frame));
     ted4_ray_camera_of(o, p.camera, &c);
+    ted4_ray_expose(o, p.camera, p.frame, &c);
     ted4_ray_bytes(ray_rotate(c.colour, s.colour), p.rgb);
     const vec3 eye = v3((float)c.matrix[0][3], (float)c.matrix[1][3], (float)c.matrix[2][3]);
     const float along = depth_noise * (ray_random(i, 6, 0, seed) + ray_random(i, 6, 1, seed) - 1);

@@ -19,6 +19,18 @@ static double draw(const ted4_ray_options *o, int number, int which, uint32_t se
 
 /* ---- times ---- */
 
+/* Returns 1 if the test cameras are the training cameras again. */
+static int is_same(const ted4_ray_options *o)
+{
+    return ted4_ray_plan_of(o->scene)->same && ted4_ray_has_lists(o->layout);
+}
+
+/* Returns the number of the camera that stands where this one does. */
+static int stands_as(const ted4_ray_options *o, int number)
+{
+    return is_same(o) && number >= o->n_train ? (number - o->n_train) % o->n_train : number;
+}
+
 int ted4_ray_has_lists(ted4_ray_layout l)
 {
     return l == RAY_BLENDER || l == RAY_NERFSTUDIO || l == RAY_HYPERNERF;
@@ -80,7 +92,7 @@ int ted4_ray_is_taken(const ted4_ray_options *o, int number, int frame)
                (number >= o->n_train || !ted4_ray_is_held(o, frame));
     if (number < o->n_train)
         return !ted4_ray_is_held(o, frame) && frame >= ted4_ray_start(o, number);
-    if (o->ways.split == RAY_OTHER_TIMES)
+    if (o->ways.split == RAY_OTHER_TIMES || is_same(o))
         return ted4_ray_is_held(o, frame);
     return frame >= ted4_ray_start(o, number);
 }
@@ -119,12 +131,17 @@ void ted4_ray_world_of(const ted4_ray_options *o, int frame, ted4_ray_world *w)
 
 /* ---- colours ---- */
 
-/* The exposures have the signs + - - + in turn, so that they do not correlate with the heights of
- * the cameras. */
+/* Signs of exposures: + - - + in turn, so that they do not correlate with the heights of the
+ * cameras. */
+static double sign_of(int number)
+{
+    return (number + number / 2) % 2 == 0 ? 1 : -1;
+}
+
 static void raw_tint(const ted4_ray_options *o, int number, double A[9])
 {
-    const double sign = (number + number / 2) % 2 == 0 ? 1 : -1;
-    const double e = 1 + o->tint * exposure * sign * (0.5 + 0.5 * draw(o, number, 9, SEED_TINT));
+    const double e = 1 + o->tint * exposure * sign_of(number) *
+                             (0.5 + 0.5 * draw(o, number, 9, SEED_TINT));
 
     for (int i = 0; i < 9; i++) {
         const double r = 2 * draw(o, number, i, SEED_TINT) - 1;
@@ -148,6 +165,26 @@ static void tint(const ted4_ray_options *o, int number, float colour[9])
     }
     for (int i = 0; i < 9; i++)
         colour[i] = (float)(A[i] - mean[i]);
+}
+
+double ted4_ray_exposure(const ted4_ray_options *o, int number, int frame)
+{
+    const double half = ted4_ray_cos(ted4_ray_time(frame, o->n_frames) / 2) / 2;
+    double sign = sign_of(stands_as(o, number));
+
+    if (o->drift == 0 || stands_as(o, number) >= o->n_train)
+        return 1;
+    for (int k = 0; k < o->n_train && o->n_train > 1; k++)
+        sign -= sign_of(k) / o->n_train;
+    return ted4_ray_exp2(o->drift * sign * half);
+}
+
+void ted4_ray_expose(const ted4_ray_options *o, int number, int frame, ted4_ray_camera *c)
+{
+    const double e = ted4_ray_exposure(o, number, frame);
+
+    for (int i = 0; i < 9 && e != 1; i++)
+        c->colour[i] = (float)(e * (double)c->colour[i]);
 }
 
 /* ---- poses ---- */
@@ -193,6 +230,7 @@ void ted4_ray_camera_of(const ted4_ray_options *o, int number, ted4_ray_camera *
     int first;
     const int places = arc_of(o, &first);
 
+    number = stands_as(o, number);
     if (ted4_ray_plan_of(o->scene)->dome && ted4_ray_around(o) != RAY_ROOM)
         ted4_ray_camera_dome(c, number, o->n_train + o->n_test, o->width, o->height);
     else if (number >= o->n_train)

@@ -13,6 +13,16 @@
 void ted4_ray_camera_of(const ted4_ray_options *o, int number, ted4_ray_camera *c);
 void ted4_ray_camera_stated(const ted4_ray_options *o, int number, ted4_ray_camera *c);
 
+/* Returns the exposure of a camera at a time, by which its colours are multiplied in linear light.
+ * That of a training camera goes up or down by o->drift stops from the first time to the last, in
+ * half a period of a cosine, about its middle; if there are two or more of them, the mean logarithm
+ * over the training cameras is 0 at every time. Test cameras have exposure 1, unless they are
+ * training cameras. */
+double ted4_ray_exposure(const ted4_ray_options *o, int number, int frame);
+
+/* Multiplies the colours of a camera by its exposure at a time. */
+void ted4_ray_expose(const ted4_ray_options *o, int number, int frame, ted4_ray_camera *c);
+
 /* Returns 1 if a training camera looks away from the scene. */
 int ted4_ray_is_blind(const ted4_ray_options *o, int number);
 

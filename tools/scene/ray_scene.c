@@ -57,6 +57,13 @@ static const ted4_ray_plan plans[RAY_SCENES] = {
     [RAY_EDGE] = { "edge", "things pop in and out at the upper edge of all pictures", LAB,
                    .hold = 8, .scale = 1 },
 
+    [RAY_DUSK] = { "dusk", "turn, exposures drift by half a stop", LAB, .hold = 8, .drift = 0.5,
+                   .scale = 1 },
+    [RAY_TINTS4] = { "tints4",
+                     "turn, four cameras disagree in colour, and held-out times are theirs", SMALL,
+                     .n_train = 4, .n_test = 4, .n_frames = 16, .hold = 8, .tint = 1, .same = 1,
+                     .scale = 1 },
+
     [RAY_THINGS0] = { "things0", "eight things, none moves", LAB, .hold = 8, .scale = 1 },
     [RAY_THINGS1] = { "things1", "eight things, one moves", LAB, .hold = 8, .scale = 1 },
     [RAY_THINGS2] = { "things2", "eight things, two move", LAB, .hold = 8, .scale = 1 },

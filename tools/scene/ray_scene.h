@@ -17,10 +17,13 @@ typedef struct {
                             (ted4_ray_is_held); 0: all pictures exist */
     double pose_error;   /* degrees, see ray_rig.h */
     double tint;         /* strength, see ray_rig.h */
+    double drift;        /* stops, see ray_rig.h */
     int places; /* number of places on the arc, of which the training cameras take the middle ones;
                    0: one per camera */
     int turned_away; /* the last of several training cameras looks away from the scene */
     ted4_ray_background background; /* surroundings of the things, by default */
+    int same;   /* 1: the test cameras are the training cameras again, which take the held-out times
+                   (layouts with lists only) */
     int rounds; /* 1: cameras take turns, in rounds in which each takes one picture
                    (ted4_ray_is_taken) */
     int dome;   /* cameras stand around the things on all sides, unless these are in a room */

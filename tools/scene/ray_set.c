@@ -29,7 +29,8 @@ ted4_ray_options ted4_ray_defaults(ted4_ray_scene s)
                                 .seed = 1,
                                 .hold = p->hold,
                                 .pose_error = p->pose_error,
-                                .tint = p->tint };
+                                .tint = p->tint,
+                                .drift = p->drift };
 }
 
 const char *ted4_ray_fault(const ted4_ray_options *o)

@@ -43,12 +43,15 @@ typedef struct {
     int hold;  /* training cameras lack time hold / 2 of every hold times; 0: none */
     double pose_error; /* pose error of training cameras in degrees, 0 to TED4_RAY_MOST_ERROR
                           (ray_rig.h) */
-    double tint; /* how much the colours of training cameras differ, 0 to TED4_RAY_MOST_TINT */
+    double tint;  /* how much the colours of training cameras differ, 0 to TED4_RAY_MOST_TINT */
+    double drift; /* stops by which the exposures of training cameras change over time, 0 to
+                     TED4_RAY_MOST_DRIFT (ray_rig.h) */
     ted4_ray_ways ways;
 } ted4_ray_options;
 
 #define TED4_RAY_MOST_ERROR 10.0
 #define TED4_RAY_MOST_TINT  2.0
+#define TED4_RAY_MOST_DRIFT 2.0
 
 /* Returns seed 1, layout blender, and the table's options of that scene. */
 ted4_ray_options ted4_ray_defaults(ted4_ray_scene s);

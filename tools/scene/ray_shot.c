@@ -55,6 +55,7 @@ void ted4_ray_shot(const ted4_ray_options *o, int number, int frame, uint8_t *rg
     ted4_ray_world w;
 
     ted4_ray_camera_of(o, number, &c);
+    ted4_ray_expose(o, number, frame, &c);
     ted4_ray_world_of(o, frame, &w);
     draw(o, &w, &c, rgba);
 }

@@ -8,7 +8,7 @@ int ted4_ray_has_truth(const ted4_ray_options *o)
 {
     static const ted4_ray_ways usual;
 
-    return o->scene > RAY_FAIR || o->hold > 0 || o->pose_error > 0 || o->tint > 0 ||
+    return o->scene > RAY_FAIR || o->hold > 0 || o->pose_error > 0 || o->tint > 0 || o->drift > 0 ||
            memcmp(&o->ways, &usual, sizeof usual) != 0;
 }
 
@@ -38,6 +38,9 @@ static void put_camera(FILE *f, const ted4_ray_options *o, int number)
     for (int r = 0; r < 3; r++)
         fprintf(f, "%s[%.9g, %.9g, %.9g]", r > 0 ? ", " : "", (double)c.colour[3 * r],
                 (double)c.colour[3 * r + 1], (double)c.colour[3 * r + 2]);
+    fputs("],\n      \"exposure\": [", f);
+    for (int j = 0; j < o->n_frames; j++)
+        fprintf(f, "%s%.9g", j > 0 ? ", " : "", ted4_ray_exposure(o, number, j));
     fputs("]\n    }", f);
 }
 
@@ -76,7 +79,8 @@ void ted4_ray_put_truth(FILE *f, const ted4_ray_options *o, int number, int fram
         plan->name, plan->shows, (unsigned)o->seed, o->width, o->height);
     fprintf(f, "  \"train_cameras\": %d,\n  \"test_cameras\": %d,\n  \"frames\": %d,\n", o->n_train,
             o->n_test, o->n_frames);
-    fprintf(f, "  \"pose_error\": %.9g,\n  \"tint\": %.9g,\n", o->pose_error, o->tint);
+    fprintf(f, "  \"pose_error\": %.9g,\n  \"tint\": %.9g,\n  \"drift\": %.9g,\n", o->pose_error,
+            o->tint, o->drift);
     fprintf(f, "  \"world\": {\"scale\": %.17g, \"shift\": [%.17g, %.17g, %.17g]%s},\n",
             ted4_ray_scale(o), plan->shift[0], plan->shift[1], plan->shift[2],
             o->ways.up_y ? ", \"up\": \"y\"" : "");

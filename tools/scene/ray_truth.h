@@ -14,7 +14,8 @@ int ted4_ray_has_truth(const ted4_ray_options *o);
  * files = scale times those of the room + shift, turned about x if up is y); turned_away (training
  * cameras that see nothing but background); lamp (power at each time; steady: 1) and solids (their
  * number at each time); cameras, in the order of the files: true and stated (camera to world, both
- * in the coordinates of the files), and colour (3 x 3 rows, linear light to the camera's colours).
+ * in the coordinates of the files), colour (3 x 3 rows, linear light to the camera's colours), and
+ * exposure (at each time, a factor of colour).
  */
 ted4_ray_put ted4_ray_put_truth;
 

@@ -35,6 +35,8 @@ typedef enum {
     RAY_MOMENT,
     RAY_ALONE,
     RAY_EDGE,
+    RAY_DUSK,
+    RAY_TINTS4,
     RAY_THINGS0,
     RAY_THINGS1,
     RAY_THINGS2,

@@ -23,6 +23,7 @@ enum {
     OPT_HOLD,
     OPT_POSE_ERROR,
     OPT_TINT,
+    OPT_DRIFT,
     OPT_LAYOUT,
     OPT_VIDEO,
     OPT_SEED,
@@ -50,6 +51,8 @@ static ted4_argument options[N_OPTIONS] = {
                          "training cameras are stated turned by D degrees, and moved as far; 0 to "
                          "10" },
     [OPT_TINT] = { 0, "tint", "S", "training cameras disagree in colour and exposure; 0 to 2" },
+    [OPT_DRIFT] = { 0, "drift", "S",
+                    "exposures of training cameras go up or down by S stops over time; 0 to 2" },
     [OPT_LAYOUT] = { 0, "layout", "L",
                      "blender (default), nerfstudio, colmap, colmap-text, hypernerf, neu3d, "
                      "calibration or llff, of which the last has stills of one time" },
@@ -80,8 +83,8 @@ static const ted4_command COMMAND = {
     "says what is held out or disturbed.",
     options,
     N_OPTIONS,
-    "--hold, --pose-error and --tint go with the layouts blender, nerfstudio and\n"
-    "hypernerf, which list what is held out; in others a NAME's hold is left out. The\n"
+    "--hold, --pose-error, --tint and --drift go with the layouts blender, nerfstudio\n"
+    "and hypernerf, which list what is held out; in others a NAME's hold is left out. The\n"
     "options from --background on make files as other writers do; most of these go\n"
     "together, and the content stays the same.\n\n"
     "Exit codes: 0 fine, 3 usage, input, output or resources.\n\n"
@@ -193,7 +196,8 @@ static int fill(ted4_ray_options *o)
         o->hold = o->ways.turns ? 0 : o->ways.split == RAY_OTHER_TIMES && d.hold == 0 ? 4 : d.hold;
     o->pose_error = o->pose_error < 0 ? d.pose_error : o->pose_error;
     o->tint = o->tint < 0 ? d.tint : o->tint;
-    if ((o->pose_error > 0 || o->tint > 0) && !lists)
+    o->drift = o->drift < 0 ? d.drift : o->drift;
+    if ((o->pose_error > 0 || o->tint > 0 || o->drift > 0) && !lists)
         return complain("errors and tints",
                         "go with the layouts blender, nerfstudio and hypernerf: "
                         "others hold out pictures of disturbed cameras");
@@ -254,6 +258,7 @@ static int set_option(command *c, int index, const char *text)
     case OPT_HOLD: return hold_of(text, &o->hold);
     case OPT_POSE_ERROR: return real(text, TED4_RAY_MOST_ERROR, &o->pose_error);
     case OPT_TINT: return real(text, TED4_RAY_MOST_TINT, &o->tint);
+    case OPT_DRIFT: return real(text, TED4_RAY_MOST_DRIFT, &o->drift);
     case OPT_LAYOUT: return layout_of(text, o);
     case OPT_SEED: return seed_of(text, &o->seed);
     default: return way(c, index - OPT_WAYS, text);
@@ -306,7 +311,8 @@ int main(int argc, char **argv)
                            .seed = 1,
                            .hold = -1,
                            .pose_error = -1,
-                           .tint = -1 },
+                           .tint = -1,
+                           .drift = -1 },
                   .threads = omp_get_max_threads() };
     const ted4_parallel threads = { run_openmp, &c.threads };
     ted4_ray_message m;
