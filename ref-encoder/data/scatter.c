@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "data/data_util.h"
+#include "data/depth_points.h"
 #include "data/point_cloud.h"
 #include "data/shown.h"
 #include "data/source.h"
@@ -25,6 +26,10 @@
 /* With a plain background, cameras look at the objects: a point must lie in at least this share of
  * the pictures. */
 #define LOOKED_AT     0.5
+/* Range of depths of depth maps: their planes are few, and hardly anything is nearer. */
+#define NEAREST_MAP   0.25
+/* Depth maps suffice if they give at least so many points. */
+#define ENOUGH        2048
 /* Passes, in order. agreed: levels by which pictures may differ about a point (0: any depth is
  * accepted). tries: candidates per random point. wanted: total number of points after the pass. At
  * any depth, most points of a ray lie in empty space, so the last pass adds only enough points to
@@ -159,32 +164,85 @@ static int begin_sweep(ted4_sweep *w, const ted4_shown *s, ted4_message *m)
     return 0;
 }
 
+/* Takes over the points of a cloud. */
+static void use(ted4_dataset *d, const ted4_point_cloud *c, int are_random)
+{
+    free(d->points);
+    free(d->point_rgb);
+    d->points = c->xyz;
+    d->point_rgb = c->rgb;
+    d->n_points = c->n;
+    d->random_points = are_random;
+}
+
+/* Returns whether a point of a depth map lies inside the bounds and, with a plain background, where
+ * enough pictures show foreground. */
+static int is_wanted(const void *user, const float xyz[3])
+{
+    const round_job *j = user;
+    const double world[3] = { (double)xyz[0], (double)xyz[1], (double)xyz[2] };
+    int seen, shown;
+
+    if (!is_inside(j->options, xyz))
+        return 0;
+    if (!j->shown->plain)
+        return 1;
+    ted4_shown_count(j->shown, world, &seen, &shown);
+    return seen >= j->fewest && (double)shown >= EMPTY * (double)seen;
+}
+
+/* Replaces the points by those of depth maps, if these are enough. Returns 0, or -1 if memory ran
+ * out. */
+static int replace_by_depth(ted4_dataset *d, const round_job *j, const ted4_parallel *p, size_t *n)
+{
+    const ted4_depth_wanted wanted = { TED4_RANDOM_POINTS, j->options->seed, is_wanted, j };
+    ted4_sweep w = j->sweep;
+    ted4_point_cloud c;
+
+    w.nearest *= NEAREST_MAP / NEAREST;
+    if (ted4_depth_points(&c, &w, &wanted, p) != 0) {
+        ted4_point_cloud_free(&c);
+        return -1;
+    }
+    if (c.n < ENOUGH) {
+        ted4_point_cloud_free(&c);
+        return 0;
+    }
+    use(d, &c, 0);
+    *n = c.n;
+    return 0;
+}
+
 /* Replaces the points by scattered ones, if any are found: first where pictures agree about
  * colours, and then, if these are few, at any depth on the rays of foreground pixels. Returns 0, or
- * -1 with *m filled. */
+ * -1 if memory ran out. */
+static int replace_by_rays(ted4_dataset *d, round_job *j, const ted4_parallel *p, size_t *n)
+{
+    ted4_point_cloud c;
+    int bad = 0;
+
+    if (ted4_point_cloud_alloc(&c, TED4_RANDOM_POINTS) != 0)
+        return -1;
+    for (size_t k = 0, before = 0; !bad && k < PASSES; before += pass[k++].tries)
+        bad = scatter(j, p, k, (uint64_t)before * TED4_RANDOM_POINTS, &c, n) != 0;
+    c.n = *n;
+    if (bad || c.n == 0)
+        ted4_point_cloud_free(&c);
+    else
+        use(d, &c, 1);
+    return bad ? -1 : 0;
+}
+
+/* Replaces the points. Returns 0, or -1 with *m filled. */
 static int replace(ted4_dataset *d, const ted4_sweep *w, const ted4_scatter_options *o,
                    const ted4_parallel *p, size_t *n, ted4_message *m)
 {
     const ted4_shown *s = w->shown;
     round_job j = { .shown = s, .options = o, .sweep = *w };
-    ted4_point_cloud c;
-    int bad = 0;
 
-    if (ted4_point_cloud_alloc(&c, TED4_RANDOM_POINTS) != 0)
-        return ted4_say_no_memory(m);
     j.fewest = s->plain && s->n > 4 ? (int)(LOOKED_AT * (double)s->n) : s->n > 1 ? 2 : 1;
-    for (size_t k = 0, before = 0; !bad && k < PASSES; before += pass[k++].tries)
-        bad = scatter(&j, p, k, (uint64_t)before * TED4_RANDOM_POINTS, &c, n) != 0;
-    if (bad || *n == 0) {
-        ted4_point_cloud_free(&c);
-        return bad ? ted4_say_no_memory(m) : 0;
-    }
-    free(d->points);
-    free(d->point_rgb);
-    d->points = c.xyz;
-    d->point_rgb = c.rgb;
-    d->n_points = *n;
-    d->random_points = 1;
+    if (replace_by_depth(d, &j, p, n) != 0 || (*n == 0 && replace_by_rays(d, &j, p, n) != 0))
+        return ted4_say_no_memory(m);
     return 0;
 }
 

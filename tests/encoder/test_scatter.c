@@ -157,7 +157,7 @@ static void test_useless(void **state)
     assert_int_equal(a.given, BALLS * BALL_POINTS);
     assert_true(a.scattered > 1000);
     assert_int_equal(a.scattered, one.n_points);
-    assert_true(one.random_points);
+    assert_false(one.random_points);
     assert_int_equal(b.scattered, a.scattered);
     assert_memory_equal(one.points, two.points, 3 * one.n_points * sizeof *one.points);
     print_message("%zu points, %zu near a surface\n", one.n_points, count_near(&one, 1.0));
