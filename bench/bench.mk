@@ -95,6 +95,20 @@ $B/tests/tools/test_lab_facts: $B/tests/tools/test_lab_facts.o \
         $(DEC_TOOL:%.c=$B/%.o) $(ENC_LIB)
 	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ -lcmocka $(LIBS)
 
+# What each means of a smaller file would gain by itself: bench/compact.md.
+COMPACT = compact compact_models compact_near compact_positions compact_fit compact_mixing \
+        compact_weights lab_views
+$B/bench/compact: $(COMPACT:%=$B/bench/%.o) $B/ref-encoder/tool/sheet.o \
+        $(DEC_TOOL:%.c=$B/%.o) $(ENC_LIB)
+	$(CC) -fopenmp $(LDFLAGS) $(filter %.o,$^) $(filter %.a,$^) -o $@ $(LIBS)
+$B/tests/tools/test_compact: $(patsubst %,$B/bench/%.o,$(filter compact_%,$(COMPACT)))
+
+# make bench-compact FILE=x.ted4 [SCENE="FOLDER DOWNSCALE"]
+bench-compact: $B/bench/compact
+	$B/bench/compact $(FILE) $(SCENE)
+
+.PHONY: bench-compact
+
 # Pictures that the pages keep.
 $B/bench/to_jpeg: $B/bench/to_jpeg.o
 	$(CC) $(LDFLAGS) $^ -o $@ $(LIBS)
@@ -198,5 +212,5 @@ deps-cluster: deps
 
 # Programs that measure; tests build them, so that none breaks unseen.
 BENCH_PROGRAMS = $(addprefix $B/bench/,bench_raster bench_render bench_train bench_scale \
-                 bench_decode rate_check spans lab_facts phases to_jpeg zoo_masks)
+                 bench_decode rate_check spans lab_facts compact phases to_jpeg zoo_masks)
 test-programs: $(BENCH_PROGRAMS)
