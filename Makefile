@@ -178,6 +178,7 @@ asan:
 
 include ref-decoder/library.mk tests/spec/spec.mk tests/strict.mk bench/bench.mk fuzz/fuzz.mk
 include conformance/conf.mk conformance/reader/reader.mk conformance/cross/cross.mk
+include ref-encoder/mpi/mpi.mk
 include player/player.mk tools/pages/pages.mk tools/packages.mk tests/mutants/mutants.mk
 
 DEPS     = gcc libc6-dev libcmocka-dev libjansson-dev libjpeg62-turbo-dev libpng-dev libxxhash-dev \

@@ -117,7 +117,13 @@ int ted4_training_look(void *training)
     t->log.left = f->left;
     ted4_teller_now(t->teller, f);
     say_estimate(t, f->left);
-    return ted4_stop_asked();
+    return o->busy == TED4_BUSY_TRAINING ? 0 : ted4_training_asked(t);
+}
+
+int ted4_training_asked(ted4_training *t)
+{
+    t->asked = ted4_exchange_first(t->trainer->exchange, ted4_stop_asked());
+    return t->asked;
 }
 
 void ted4_training_rewound(ted4_training *t)

@@ -27,6 +27,12 @@ static int fail(ted4_training *t)
     return -1;
 }
 
+/* Returns whether this process writes files. */
+static int leads(const ted4_training *t)
+{
+    return t->trainer->exchange == NULL || t->trainer->exchange->rank == 0;
+}
+
 static int exists(const char *path)
 {
     return path != NULL && access(path, F_OK) == 0;
@@ -76,6 +82,10 @@ int ted4_training_begin(ted4_training *t, const ted4_request *r, ted4_trainer *t
     ted4_estimate_begin(&t->estimate);
     if (find_start(t) != 0)
         return -1;
+    /* Files are rank 0's, from when all have read what they begin with. */
+    (void)ted4_exchange_first(trainer->exchange, 0);
+    if (!leads(t))
+        t->checkpoint = NULL;
     ted4_stop_keep();
     trainer->onlooker.look = ted4_training_look;
     trainer->onlooker.user = t;
@@ -100,7 +110,8 @@ static int log_step(ted4_training *t)
     ted4_preview *p = &t->log.preview;
 
     ted4_run_log_tick(&t->log, tr);
-    if (ted4_preview_make(
+    if (leads(t) &&
+        ted4_preview_make(
             tr, tr->iteration == ted4_trainer_total(tr) ? LAST_PICTURES : PREVIEW_PICTURES, p) != 0)
         return fail(t);
     ted4_run_log_skip(&t->log);
@@ -150,7 +161,7 @@ static int stop(ted4_training *t, int between)
                  t->request->stage1);
         way = text;
     }
-    t->stopped = ted4_stop_asked();
+    t->stopped = t->asked;
     snprintf(t->why, sizeof t->why, "stopped at step %llu of %llu; %s", now,
              (unsigned long long)ted4_trainer_total(t->trainer), way);
     return -1;
@@ -162,8 +173,8 @@ static int keep_stage1(ted4_training *t)
     ted4_trainer *tr = t->trainer;
     const char *path = t->request->stage1;
 
-    if (path == NULL || tr->phase.stage2 || tr->iteration != (uint64_t)tr->opt.stage1 ||
-        exists(path))
+    if (path == NULL || !leads(t) || tr->phase.stage2 ||
+        tr->iteration != (uint64_t)tr->opt.stage1 || exists(path))
         return 0;
     ted4_run_log_tick(&t->log, tr);
     return ted4_checkpoint_save(tr, path) != 0 ? fail(t) : 0;
@@ -258,7 +269,7 @@ int ted4_training_go(ted4_training *t, uint64_t steps)
     while (tr->iteration < steps) {
         const uint64_t before = tr->iteration;
 
-        if (ted4_stop_asked())
+        if (ted4_training_asked(t))
             return stop(t, 1);
         if (keep_stage1(t) != 0 || before_long_step(t) != 0)
             return -1;
@@ -276,7 +287,7 @@ int ted4_training_go(ted4_training *t, uint64_t steps)
     ted4_run_log_tick(&t->log, tr);
     if (keep_stage1(t) != 0 || save(t) != 0)
         return -1;
-    return ted4_stop_asked() ? stop(t, 0) : 0;
+    return ted4_training_asked(t) ? stop(t, 0) : 0;
 }
 
 int ted4_training_code(ted4_training *t, ted4_coded *c)
@@ -313,7 +324,7 @@ int ted4_training_code(ted4_training *t, ted4_coded *c)
                                     sizeof t->why) != 0;
     free(text);
     ted4_scene_free(scene);
-    if (!bad && ted4_stop_asked())
+    if (!bad && ted4_training_asked(t))
         bad = stop(t, 0);
     if (bad)
         ted4_coded_free(c);

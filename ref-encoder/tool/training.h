@@ -23,6 +23,7 @@ typedef struct {
     double mv_seed_share;
     int estimated;  /* 1: the estimated duration of the run has been printed */
     int64_t saved;  /* the step that the checkpoint holds; negative: there is no checkpoint */
+    int asked;      /* the signal that asks for the end, as all processes know it; 0: none */
     int stopped;    /* the signal that ended training; 0: none has */
     char why[1024]; /* filled by every function that fails */
 } ted4_training;
@@ -61,8 +62,12 @@ int ted4_training_target(ted4_training *t, ted4_coded *c);
 /* ---- shared by training.c, target.c and look.c ---- */
 
 /* The trainer's onlooker, called during training: updates the status line and the estimate of the
- * remaining time. Returns the signal that asked for the end, or 0. In look.c. */
+ * remaining time. Returns, during probes and trials, the signal that asked for the end, or 0. In
+ * look.c. */
 int ted4_training_look(void *training);
+/* Returns the signal that asked a process of this run to end, or 0. All processes call it together
+ * and learn the same. In look.c. */
+int ted4_training_asked(ted4_training *t);
 /* Tells the estimate that training was moved to another step, or interrupted. In look.c. */
 void ted4_training_rewound(ted4_training *t);
 

@@ -494,7 +494,10 @@ static void test_batch(void **state)
         assert_int_equal(ted4_generate_backward(t.work.generator, &in, &t.work.splat_gradient, NULL,
                                                 t.visible_blocks.gradient, t.net.gradient),
                          0);
-        ted4_pose_gather(&t, &balls.pictures[k], &v, &s);
+        ted4_pose_motion gradient;
+
+        ted4_pose_gradient(&t, &balls.pictures[k], &v, &s, gradient);
+        ted4_pose_add(&t, &balls.pictures[k], gradient);
         if (k == 0)
             memcpy(once, t.poses.gradient[0], sizeof once);
     }

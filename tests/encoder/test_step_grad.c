@@ -253,11 +253,11 @@ static void distortion_backward(ted4_raster *raster, ted4_generator *g,
     for (int c = 0; c < 4; c++)
         gr.rot[c] = of_splat[6 + c];
     ted4_adjoint *adjoint = ted4_adjoint_new();
-
     assert_int_equal(ted4_raster_backward(adjoint, raster, s, &pr.view, NULL, pr.d_image, &gr), 0);
     ted4_adjoint_free(adjoint);
     assert_int_equal(ted4_generate_backward(g, in, &gr, NULL, d_attr, pr.d_net), 0);
-    ted4_pose_backward(&pr.poses, 0, &pr.view, s, &gr, ted4_generate_camera_gradient(g), NULL);
+    ted4_pose_backward(&pr.poses, 0, &pr.view, s, &gr, ted4_generate_camera_gradient(g), NULL,
+                       pr.poses.gradient[0]);
 }
 
 /* Fills the gradient, residuals and image; returns the loss. */

@@ -38,6 +38,7 @@ ref-encoder/train/monitor   math $rooms_5
 ref-encoder/train/step      base norm recon math write $rooms_6
 ref-encoder/train/search    math write $rooms_7
 ref-encoder/train           $training
+ref-encoder/mpi             tool train/state
 ref-encoder/tool            base norm render math data eval kernel write tool $training ted4.h
 "
 bad=0

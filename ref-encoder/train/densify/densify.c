@@ -43,17 +43,16 @@ typedef struct {
     ted4_trainer *t;
     const ted4_generate_input *in;
     const ted4_splats *s;
+    float *to; /* [n_visible][ted4_densify_per_block] */
 } gather_job;
 
-/* Adds the statistics of a visible block: one row per splat and per anchor. */
-static void gather_block(void *arg, size_t i)
+/* Adds the statistics of visible block i in one view: to the rows of the anchors' opacity [3][32],
+ * and to those of their Gaussians' gradients [2 K][32]. */
+static void add_block(const gather_job *g, size_t i, float *opacity, float *gradient)
 {
-    const gather_job *g = arg;
-    ted4_trainer *t = g->t;
+    const ted4_trainer *t = g->t;
     const int K = t->layout.head.n_offsets;
     const uint32_t lanes = g->in->lanes[i], there = ted4_lanes_there(g->in, i);
-    float *opacity = ted4_block(&t->anchors, TED4_ROW_OPACITY, t->visible_blocks.block[i]);
-    float *gradient = ted4_block(&t->anchors, TED4_ROW_GRADIENT, t->visible_blocks.block[i]);
 
     for (int j = 0; j < TED4_LANES; j++) {
         opacity[TED4_LANES + j] += (float)(lanes >> j & 1);
@@ -76,11 +75,63 @@ static void gather_block(void *arg, size_t i)
     }
 }
 
+static void gather_block(void *arg, size_t i)
+{
+    const gather_job *g = arg;
+    const size_t block = g->t->visible_blocks.block[i];
+
+    add_block(g, i, ted4_block(&g->t->anchors, TED4_ROW_OPACITY, block),
+              ted4_block(&g->t->anchors, TED4_ROW_GRADIENT, block));
+}
+
 void ted4_densify_gather(ted4_trainer *t, const ted4_generate_input *in, const ted4_splats *s)
 {
-    gather_job j = { t, in, s };
+    gather_job j = { t, in, s, NULL };
 
     ted4_parallel_for(t->parallel, t->visible_blocks.n, gather_block, &j);
+}
+
+/* Rows of the anchors' opacity, before those of gradients. */
+enum { OPACITY_ROWS = 3 };
+
+size_t ted4_densify_per_block(const ted4_trainer *t)
+{
+    return (OPACITY_ROWS + 2 * (size_t)t->layout.head.n_offsets) * TED4_LANES;
+}
+
+static void view_block(void *arg, size_t i)
+{
+    const gather_job *g = arg;
+    const size_t size = ted4_densify_per_block(g->t);
+    float *to = g->to + i * size;
+
+    memset(to, 0, size * sizeof *to);
+    add_block(g, i, to, to + OPACITY_ROWS * TED4_LANES);
+}
+
+void ted4_densify_view(ted4_trainer *t, const ted4_generate_input *in, const ted4_splats *s,
+                       float *to)
+{
+    gather_job j = { t, in, s, to };
+
+    ted4_parallel_for(t->parallel, t->visible_blocks.n, view_block, &j);
+}
+
+void ted4_densify_add(ted4_trainer *t, const float *sum)
+{
+    const size_t size = ted4_densify_per_block(t), first = OPACITY_ROWS * TED4_LANES;
+
+    for (size_t i = 0; i < t->visible_blocks.n; i++) {
+        const size_t block = t->visible_blocks.block[i];
+        float *opacity = ted4_block(&t->anchors, TED4_ROW_OPACITY, block);
+        float *gradient = ted4_block(&t->anchors, TED4_ROW_GRADIENT, block);
+        const float *from = sum + i * size;
+
+        for (size_t k = 0; k < first; k++)
+            opacity[k] += from[k];
+        for (size_t k = first; k < size; k++)
+            gradient[k - first] += from[k];
+    }
 }
 
 typedef struct {

@@ -82,9 +82,9 @@ static double turned(const ted4_view *v, int i, const double x[3])
            (double)v->R[3 * i + 2] * x[2];
 }
 
-void ted4_pose_backward(ted4_poses *p, size_t item, const ted4_view *v, const ted4_splats *s,
+void ted4_pose_backward(const ted4_poses *p, size_t item, const ted4_view *v, const ted4_splats *s,
                         const ted4_splat_grads *g, const float *d_centre,
-                        const ted4_parallel *parallel)
+                        const ted4_parallel *parallel, ted4_pose_motion gradient)
 {
     gather_job job = { .s = s, .g = g };
     const size_t pose = p->of[item];
@@ -113,8 +113,7 @@ void ted4_pose_backward(ted4_poses *p, size_t item, const ted4_view *v, const te
         torque[i] += lever[i];
     ted4_rotation_backward(w, torque);
     for (int i = 0; i < 3; i++) {
-        p->gradient[pose][i] += (float)torque[i];
-        p->gradient[pose][3 + i] += (float)force[i];
+        gradient[i] = (float)torque[i];
+        gradient[3 + i] = (float)force[i];
     }
-    p->seen[pose] = 1;
 }

@@ -44,8 +44,7 @@ int ted4_trainer_render(ted4_trainer *t, const ted4_picture *pic, ted4_pass pass
                : 0;
 }
 
-/* Makes room for the gradients of n splats. */
-static int reserve_splats(ted4_trainer *t, size_t n)
+int ted4_trainer_reserve_splats(ted4_trainer *t, size_t n)
 {
     ted4_splat_grads *g = &t->work.splat_gradient;
     float *at;
@@ -80,7 +79,7 @@ static int reserve_splats(ted4_trainer *t, size_t n)
 
 int ted4_trainer_render_backward(ted4_trainer *t, const ted4_view *v, const ted4_splats *s)
 {
-    if (reserve_splats(t, s->n) != 0)
+    if (ted4_trainer_reserve_splats(t, s->n) != 0)
         return -1;
     return ted4_raster_backward(t->work.adjoint, t->work.raster, s, v, t->parallel, t->work.d_image,
                                 &t->work.splat_gradient) != 0

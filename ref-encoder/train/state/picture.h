@@ -25,6 +25,9 @@ int ted4_trainer_generate(ted4_trainer *t, const ted4_picture *pic, ted4_pass pa
  * t->message filled. */
 int ted4_trainer_render(ted4_trainer *t, const ted4_picture *pic, ted4_pass pass, ted4_view *v,
                         ted4_generate_input *in, ted4_splats *s);
+/* Makes room for n gradients in t->work.splat_gradient, whose values are unknown afterwards.
+ * Returns 0, or -1 with t->message filled. */
+int ted4_trainer_reserve_splats(ted4_trainer *t, size_t n);
 /* Backpropagates t->work.d_image to t->work.splat_gradient, after a forward pass that was not for
  * the image only. Returns 0, or -1 with t->message filled. */
 int ted4_trainer_render_backward(ted4_trainer *t, const ted4_view *v, const ted4_splats *s);

@@ -6,6 +6,7 @@
 
 #include "base/parallel.h"
 #include "data/dataset.h"
+#include "exchange.h"
 #include "monitor_state.h"
 #include "search_state.h"
 #include "train/loss/camera_colour.h"
@@ -115,6 +116,8 @@ typedef struct {
     ted4_train_options opt;
     ted4_dataset *data;            /* borrowed */
     const ted4_parallel *parallel; /* borrowed */
+    /* Borrowed, set by the program after that; NULL: this process trains alone. */
+    ted4_exchange *exchange;
 
     /* Learnt parameters: updated by step/; densify/ adds and removes anchors, resize/ and search/
      * change the layout. */

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "picture.h"
+#include "view_exchange.h"
 #include "visible_blocks.h"
 
 /* Arrays of ted4_splat_grads that the views share: mean, scale, rotation, opacity. */
@@ -19,11 +20,21 @@ static void shared_arrays(const ted4_splat_grads *g, float *array[SHARED])
     array[10] = g->opacity;
 }
 
-int ted4_batch_begin(ted4_trainer *t, ted4_view_batch *b, const uint32_t *item, size_t n)
+/* Returns the floats of a view before those of the caller: the shared arrays, and what lies behind
+ * colours. */
+static size_t gradients_of(const ted4_trainer *t, const ted4_view_batch *b)
+{
+    return SHARED * b->s.n + ted4_generate_view_size(t->work.generator, t->visible_blocks.n);
+}
+
+int ted4_batch_begin(ted4_trainer *t, ted4_view_batch *b, const uint32_t *item, size_t n,
+                     size_t per_block)
 {
     memset(b, 0, sizeof *b);
     b->n = n;
     b->item = item;
+    b->per_block = per_block;
+    ted4_exchange_views(t->exchange, n, &b->first, &b->end);
     b->all.by_view = n > 1;
     for (size_t i = 0; i < n; i++)
         ted4_trainer_view(t, &t->data->pictures[item[i]], &b->v[i], b->camera[i]);
@@ -32,12 +43,13 @@ int ted4_batch_begin(ted4_trainer *t, ted4_view_batch *b, const uint32_t *item, 
         ted4_trainer_generate(t, &t->data->pictures[item[0]], TED4_PASS_STEP, &b->all, &b->s) != 0)
         return -1;
     b->in = b->all;
-    if (n > 1 && ted4_view_sums_begin(&t->work.view_sums,
-                                      SHARED * b->s.n + ted4_generate_view_size(
-                                                            t->work.generator, t->visible_blocks.n),
-                                      n) != 0)
+    b->opacity = b->s.opacity;
+    if (n > 1 && (ted4_view_sums_begin(&t->work.view_sums,
+                                       gradients_of(t, b) + per_block * t->visible_blocks.n,
+                                       b->end > b->first ? b->end - b->first : 1) != 0 ||
+                  ted4_view_exchange_begin(t->exchange, &t->work.view_sums) != 0))
         return ted4_trainer_fail(t, "no memory for sums over views");
-    return 0;
+    return n > 1 ? ted4_trainer_reserve_splats(t, b->s.n) : 0;
 }
 
 typedef struct {
@@ -73,6 +85,11 @@ int ted4_batch_render_backward(ted4_trainer *t, ted4_view_batch *b, size_t i)
     return ted4_trainer_render_backward(t, &b->v[i], &b->s);
 }
 
+float *ted4_batch_other(ted4_trainer *t, const ted4_view_batch *b)
+{
+    return ted4_view_sums_next(&t->work.view_sums) + gradients_of(t, b);
+}
+
 void ted4_batch_add(ted4_trainer *t, ted4_view_batch *b)
 {
     float *array[SHARED];
@@ -93,13 +110,17 @@ void ted4_batch_add(ted4_trainer *t, ted4_view_batch *b)
 int ted4_batch_backward(ted4_trainer *t, ted4_view_batch *b)
 {
     if (b->n > 1) {
-        const float *mean = ted4_view_sums_mean(&t->work.view_sums, t->parallel);
-        float *array[SHARED];
+        float *mean = ted4_view_sums_total(&t->work.view_sums, t->parallel), *array[SHARED];
+
+        ted4_view_exchange(t->exchange, &t->work.view_sums, b->n, t->parallel);
+        ted4_view_sums_scale(mean, gradients_of(t, b), 1.0f / (float)b->n, t->parallel);
 
         shared_arrays(&t->work.splat_gradient, array);
         for (int k = 0; k < SHARED; k++)
             memcpy(array[k], mean + (size_t)k * b->s.n, b->s.n * sizeof *mean);
         b->all.view_sum = mean + SHARED * b->s.n;
+        b->other = mean + gradients_of(t, b);
+        b->s.opacity = b->opacity;
     }
     return ted4_generate_backward(t->work.generator, &b->all, &t->work.splat_gradient, t->parallel,
                                   t->visible_blocks.gradient, t->net.gradient) != 0

@@ -69,6 +69,7 @@ void ted4_view_sums_finish(ted4_view_sums *s)
 {
     for (int k = 0; k < TED4_VIEW_LEVELS; k++)
         free(s->node[k]);
+    free(s->received);
     memset(s, 0, sizeof *s);
 }
 
@@ -89,15 +90,29 @@ void ted4_view_sums_add(ted4_view_sums *s, const ted4_parallel *p)
     }
 }
 
-const float *ted4_view_sums_mean(ted4_view_sums *s, const ted4_parallel *p)
+float *ted4_view_sums_total(ted4_view_sums *s, const ted4_parallel *p)
 {
-    sum_job scale = { s->node[0], NULL, s->size, 1.0f / (float)s->n_views };
-
     for (int last = waiting(s->n_views) - 1; last > 0; last--) {
         sum_job j = { s->node[last - 1], s->node[last], s->size, 0 };
 
         run(p, &j);
     }
-    run(p, &scale);
     return s->node[0];
+}
+
+void ted4_view_sums_join(float *node, size_t size, size_t n, const ted4_parallel *p)
+{
+    for (size_t step = 1; step < n; step *= 2)
+        for (size_t i = 0; i + step < n; i += 2 * step) {
+            sum_job j = { node + i * size, node + (i + step) * size, size, 0 };
+
+            run(p, &j);
+        }
+}
+
+void ted4_view_sums_scale(float *x, size_t n, float factor, const ted4_parallel *p)
+{
+    sum_job j = { x, NULL, n, factor };
+
+    run(p, &j);
 }

@@ -21,6 +21,7 @@ typedef struct {
     float *node[TED4_VIEW_LEVELS]; /* owned, [capacity] */
     size_t size, capacity;         /* floats of a node */
     size_t n_views;                /* added so far */
+    float *received;               /* owned by view_exchange.h; NULL: nothing was received yet */
 } ted4_view_sums;
 
 /* Begins a sum of arrays of size floats over n views, 1 to TED4_MAX_VIEWS. Returns 0, or -1 if
@@ -29,8 +30,14 @@ int ted4_view_sums_begin(ted4_view_sums *s, size_t size, size_t n);
 /* Returns the array [size] of the next view, to be filled before ted4_view_sums_add. */
 float *ted4_view_sums_next(ted4_view_sums *s);
 void ted4_view_sums_add(ted4_view_sums *s, const ted4_parallel *p);
-/* Returns the mean over the views, valid until the next sum begins. At least one view. */
-const float *ted4_view_sums_mean(ted4_view_sums *s, const ted4_parallel *p);
+/* Ends the sum. Returns it, valid until the next one begins; without any view, an array of
+ * unknown values. */
+float *ted4_view_sums_total(ted4_view_sums *s, const ted4_parallel *p);
+/* Adds node[n][size], the nodes of neighbouring ranges of 2^k views each, of which the last may
+ * have fewer, as in the tree of all these views. node[0] receives the sum; the others change. */
+void ted4_view_sums_join(float *node, size_t size, size_t n, const ted4_parallel *p);
+/* Multiplies x[n]. */
+void ted4_view_sums_scale(float *x, size_t n, float factor, const ted4_parallel *p);
 void ted4_view_sums_finish(ted4_view_sums *s);
 
 #endif

@@ -79,20 +79,40 @@ static int shuffle_batches(ted4_trainer *t)
     return 0;
 }
 
-/* Announces the next pictures, so that they can be decoded in the meantime. Those after the next
- * shuffle are not known yet. */
+/* Returns the number of pictures of the batch that begins with picture at of the order. */
+static size_t batch_at(const ted4_trainer *t, size_t at)
+{
+    const ted4_order *o = &t->order;
+    const ted4_picture *pic = t->data->pictures;
+    size_t n = 1;
+
+    while (n < (size_t)t->opt.batch && at + n < o->n &&
+           pic[o->item[at + n]].frame == pic[o->item[at]].frame)
+        n++;
+    return n;
+}
+
+/* Announces the next pictures that this process draws, so that they can be decoded in the meantime.
+ * Those after the next shuffle are not known yet. */
 static void announce(const ted4_trainer *t)
 {
     const ted4_order *o = &t->order;
+    int left = TED4_DATASET_AHEAD;
 
-    for (uint32_t i = o->next; i < o->n && i < o->next + TED4_DATASET_AHEAD; i++)
-        ted4_dataset_ahead(t->data, o->item[i]);
+    for (size_t at = o->next; at < o->n && left > 0;) {
+        const size_t n = batch_at(t, at);
+        size_t first, end;
+
+        ted4_exchange_views(t->exchange, n, &first, &end);
+        for (size_t i = first; i < end && left > 0; i++, left--)
+            ted4_dataset_ahead(t->data, o->item[at + i]);
+        at += n;
+    }
 }
 
 int ted4_next_pictures(ted4_trainer *t, const uint32_t **item, size_t *n)
 {
     ted4_order *o = &t->order;
-    const ted4_picture *pic = t->data->pictures;
 
     if (o->next >= o->n) {
         if (t->opt.batch > 1 && shuffle_batches(t) != 0)
@@ -103,10 +123,7 @@ int ted4_next_pictures(ted4_trainer *t, const uint32_t **item, size_t *n)
         o->next = 0;
     }
     *item = o->item + o->next;
-    *n = 1;
-    while (*n < (size_t)t->opt.batch && o->next + *n < o->n &&
-           pic[(*item)[*n]].frame == pic[**item].frame)
-        ++*n;
+    *n = batch_at(t, o->next);
     o->next += (uint32_t)*n;
     announce(t);
     return 0;

@@ -22,13 +22,29 @@
 #define TRIAL 0.2
 #define WORTH 0.25 /* pixels */
 
-void ted4_pose_gather(ted4_trainer *t, const ted4_picture *pic, const ted4_view *v,
-                      const ted4_splats *s)
+void ted4_pose_gradient(ted4_trainer *t, const ted4_picture *pic, const ted4_view *v,
+                        const ted4_splats *s, ted4_pose_motion gradient)
 {
     if (ted4_poses_learnt(&t->poses))
         ted4_pose_backward(&t->poses, (size_t)(pic - t->data->pictures), v, s,
                            &t->work.splat_gradient,
-                           ted4_generate_camera_gradient(t->work.generator), t->parallel);
+                           ted4_generate_camera_gradient(t->work.generator), t->parallel, gradient);
+    else
+        memset(gradient, 0, sizeof(ted4_pose_motion));
+}
+
+void ted4_pose_add(ted4_trainer *t, const ted4_picture *pic, const ted4_pose_motion gradient)
+{
+    ted4_poses *p = &t->poses;
+
+    if (!ted4_poses_learnt(p))
+        return;
+
+    const size_t pose = p->of[pic - t->data->pictures];
+
+    for (int i = 0; i < TED4_POSE_VALUES; i++)
+        p->gradient[pose][i] += gradient[i];
+    p->seen[pose] = 1;
 }
 
 void ted4_update_poses(ted4_trainer *t)

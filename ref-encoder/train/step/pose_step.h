@@ -6,11 +6,14 @@
 
 #include "train/state/trainer.h"
 
-/* Adds the gradient of one picture's loss to that of its pose, if poses are learnt. Call once for
- * each picture of a step, after ted4_generate_backward or, of several views, after
- * ted4_generate_view_backward; v and s as drawn. */
-void ted4_pose_gather(ted4_trainer *t, const ted4_picture *pic, const ted4_view *v,
-                      const ted4_splats *s);
+/* Computes the gradient of one picture's loss with respect to its pose; 0 unless poses are learnt.
+ * Call it after ted4_generate_backward or, of several views, after ted4_generate_view_backward; v
+ * and s as drawn. */
+void ted4_pose_gradient(ted4_trainer *t, const ted4_picture *pic, const ted4_view *v,
+                        const ted4_splats *s, ted4_pose_motion gradient);
+/* Adds it to the gradient of the pose, if poses are learnt. Call it once for each picture of a
+ * step. */
+void ted4_pose_add(ted4_trainer *t, const ted4_picture *pic, const ted4_pose_motion gradient);
 /* Does one step of Adam for the poses that have gathered gradients, and keeps the world where it
  * is. Sets the norm of these gradients for the monitor. */
 void ted4_update_poses(ted4_trainer *t);

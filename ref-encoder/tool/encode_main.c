@@ -1,0 +1,385 @@
+/* encode_main.c - see encode_main.h.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "encode_main.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "check_report.h"
+#include "data/dataset.h"
+#include "data/scatter.h"
+#include "file_out.h"
+#include "tool/threads.h"
+#include "request.h"
+#include "stop.h"
+#include "ted4.h"
+#include "tool/cli.h"
+#include "train/model/header_from_options.h"
+#include "train/step/trainer_init.h"
+#include "training.h"
+
+/* What a run of the program works with. All borrowed. */
+typedef struct {
+    const ted4_request *request;
+    const ted4_parallel *parallel;
+    ted4_teller *teller;
+    ted4_exchange *exchange; /* NULL: alone */
+    double begin;            /* of ted4_seconds */
+} encoder;
+
+/* Returns whether this process writes files and messages. */
+static int leads(const ted4_exchange *x)
+{
+    return x == NULL || x->rank == 0;
+}
+
+/* Says why this process ends. If the others do not end for the same reason, ends them, too. */
+static int complain(const encoder *e, const char *text)
+{
+    ted4_exchange *x = e->exchange;
+
+    if (x != NULL && x->n > 1 && !x->meet(x->user)) {
+        ted4_teller_error(e->teller, "rank %zu of %zu: %s", x->rank, x->n, text);
+        x->end(x->user, TED4_EXIT_TOOL);
+    } else if (leads(x)) {
+        ted4_teller_error(e->teller, "%s", text);
+    }
+    return TED4_EXIT_TOOL;
+}
+
+/* Peak resident memory of this process, MiB. */
+static double peak_mib(void)
+{
+    struct rusage u;
+
+    return getrusage(RUSAGE_SELF, &u) == 0 ? (double)u.ru_maxrss / 1024.0 : 0.0;
+}
+
+/* Seconds for loading the scene and starting, and for training, coding and verification; train
+ * includes the training time of the earlier runs that were resumed. */
+typedef struct {
+    double setup, train;
+} times;
+
+static void report(const ted4_request *r, const ted4_trainer *t, ted4_teller *teller,
+                   const ted4_coded *c, times s)
+{
+    const ted4_verified *v = &c->verified;
+
+    if (r->json)
+        printf("{\"bytes\":%zu,\"lambda\":%.7g,\"setup_s\":%.2f,\"train_s\":%.2f,\"steps\":%llu,"
+               "\"ms_per_step\":%.3f,\"anchors\":%u,"
+               "\"gaussians\":%zu,\"dynamic\":%u,\"estimated_bits\":%.0f,\"coded_bits\":%.0f,"
+               "\"probe_with_time\":%.6f,\"probe_without\":%.6f,\"rollbacks\":%llu,\"peak_mib\":%."
+               "0f,\"hash\":\"%s\"}\n",
+               c->size, c->lambda, s.setup, s.train, (unsigned long long)t->iteration,
+               1e3 * s.train / (double)(t->iteration > 0 ? t->iteration : 1), v->anchors,
+               v->gaussians, v->dynamic, v->estimated_bits, v->coded_bits, t->search.probe_loss[0],
+               t->search.probe_loss[1], (unsigned long long)t->monitor.state.rollbacks, peak_mib(),
+               v->hash);
+    else
+        ted4_teller_say(
+            teller,
+            "%s: %zu bytes, %u anchors (%u move), %zu Gaussians, trained in %.1f s, hash %s",
+            r->out, c->size, v->anchors, v->dynamic, v->gaussians, s.train, v->hash);
+}
+
+/* Exit status of a run that was ended by a signal, minus the number of the signal. */
+enum { SIGNALLED = 128 };
+
+/* Says what the exchange between ranks has cost, if there was any. */
+static void say_exchange(const encoder *e)
+{
+    const ted4_exchange *x = e->exchange;
+
+    if (x == NULL || x->n == 1)
+        return;
+    if (x->steps == 0)
+        ted4_teller_say(e->teller, "%zu ranks have shared no step: each had one view", x->n);
+    else
+        ted4_teller_say(e->teller,
+                        "%zu ranks have shared %llu steps: rank 0 has sent %.0f bytes a step, and "
+                        "spent %.1f ms a step on that and on waiting",
+                        x->n, (unsigned long long)x->steps, (double)x->bytes / (double)x->steps,
+                        1e3 * x->seconds / (double)x->steps);
+}
+
+/* Trains, codes and writes the file. Returns the exit status. */
+static int run(const encoder *e, ted4_trainer *t)
+{
+    const ted4_request *r = e->request;
+    ted4_teller *teller = e->teller;
+    const double start = ted4_seconds();
+    ted4_training training;
+    ted4_coded coded = { 0 };
+    int bad = ted4_training_begin(&training, r, t, teller) != 0;
+    const double before = t->seconds;
+
+    if (!bad && r->target_size > 0)
+        bad = ted4_training_target(&training, &coded) != 0;
+    else if (!bad)
+        bad = ted4_training_go(&training, ted4_trainer_total(t)) != 0 ||
+              ted4_training_code(&training, &coded) != 0;
+    /* The file is written before the log is closed, so that it is not lost if closing fails. */
+    if (leads(e->exchange))
+        bad = bad || ted4_file_write(r->out, coded.bytes, coded.size, training.why,
+                                     sizeof training.why) != 0;
+    bad = ted4_training_end(&training, bad) != 0;
+    if (!bad) {
+        say_exchange(e);
+        report(r, t, teller, &coded, (times) { start - e->begin, before + ted4_seconds() - start });
+    }
+
+    const int over = r->target_size > 0 && coded.size > r->target_size;
+
+    ted4_coded_free(&coded);
+    if (bad && training.stopped != 0) {
+        ted4_teller_say(teller, "%s", training.why);
+        return SIGNALLED + training.stopped;
+    }
+    if (bad)
+        return complain(e, training.why);
+    if (over && leads(e->exchange))
+        ted4_teller_error(teller,
+                          "warning: no lambda gave %zu bytes or less; this is the smallest file",
+                          r->target_size);
+    return over ? TED4_EXIT_WARNED : TED4_EXIT_FINE;
+}
+
+/* Sets the status line for the time before training. */
+static void now(ted4_teller *teller, ted4_teller_kind kind, const char *name)
+{
+    ted4_facts f = { .kind = kind };
+
+    snprintf(f.name, sizeof f.name, "%s", name);
+    ted4_teller_now(teller, &f);
+}
+
+static int encode(const encoder *e, ted4_dataset *d)
+{
+    ted4_train_options options = e->request->options;
+    ted4_trainer t;
+
+    now(e->teller, TED4_TELL_STARTING, "placing first anchors");
+    if (ted4_header_settle(&options, d) != 0)
+        return complain(e, "no memory to look for flicker");
+
+    const int bad = ted4_trainer_init(&t, &options, d, e->parallel) != 0;
+
+    t.exchange = e->exchange;
+
+    const int status = bad ? complain(e, t.message.text) : run(e, &t);
+
+    ted4_trainer_finish(&t);
+    return status;
+}
+
+enum { FEWEST_DECODERS = 4 };
+
+static int is_device(const char *path)
+{
+    struct stat s;
+
+    return stat(path, &s) == 0 && !S_ISREG(s.st_mode) && !S_ISDIR(s.st_mode);
+}
+
+/* Tests before hours of training whether all output files can be written. Returns 0 or an exit
+ * status. */
+static int check_outputs(const encoder *e)
+{
+    const ted4_request *r = e->request;
+    char why[1024];
+
+    if (r->check || !leads(e->exchange))
+        return 0;
+    if (ted4_file_writable(r->out, r->force, why, sizeof why) != 0 ||
+        (r->checkpoint != NULL && ted4_file_writable(r->checkpoint, 1, why, sizeof why) != 0) ||
+        (r->stage1 != NULL && ted4_file_writable(r->stage1, 1, why, sizeof why) != 0) ||
+        (r->log != NULL && !is_device(r->log) &&
+         ted4_file_writable(r->log, 1, why, sizeof why) != 0))
+        return complain(e, why);
+    return 0;
+}
+
+/* Number of threads that decode pictures in advance: none for a single thread; otherwise as many as
+ * there are threads, but at least FEWEST_DECODERS. */
+static int decoders(const ted4_parallel *p)
+{
+    const int n = ted4_threads_count(p);
+
+    return n == 1 ? 0 : n < FEWEST_DECODERS ? FEWEST_DECODERS : n;
+}
+
+/* Prints the warnings of the loaders from number from on. Returns the number of all warnings. */
+static size_t warn(const encoder *e, const ted4_dataset *d, size_t from)
+{
+    for (size_t i = from; i < d->n_warnings && leads(e->exchange); i++)
+        ted4_teller_error(e->teller, "warning: %s", d->warnings[i]);
+    return d->n_warnings;
+}
+
+/* Callback of the loader while it unpacks a video. frames: number of frames so far. */
+static void unpacking(void *teller, const char *video, size_t frames)
+{
+    const char *base = strrchr(video, '/');
+    ted4_facts f = { .kind = TED4_TELL_UNPACKING, .step = frames };
+
+    snprintf(f.name, sizeof f.name, "%s", base != NULL ? base + 1 : video);
+    ted4_teller_now(teller, &f);
+}
+
+static void say_found(ted4_teller *teller, const ted4_dataset *d)
+{
+    size_t tests = 0;
+    int low = d->n_pictures > 0 ? d->pictures[0].camera.width : 0, high = low;
+
+    for (size_t i = 0; i < d->n_pictures; i++) {
+        const int width = d->pictures[i].camera.width;
+
+        tests += d->pictures[i].is_test;
+        low = width < low ? width : low;
+        high = width > high ? width : high;
+    }
+
+    char size[40];
+
+    if (low == high)
+        snprintf(size, sizeof size, "%d x %d", low,
+                 d->n_pictures > 0 ? d->pictures[0].camera.height : 0);
+    else
+        snprintf(size, sizeof size, "%d to %d wide", low, high);
+    ted4_teller_say(
+        teller, "%s: %zu training pictures, %zu held out, of %u camera%s and %u time%s, %s pixels",
+        d->layout, d->n_pictures - tests, tests, (unsigned)d->n_cameras,
+        d->n_cameras == 1 ? "" : "s", (unsigned)d->n_frames, d->n_frames == 1 ? "" : "s", size);
+}
+
+/* Replaces the initial points if the scene has none, or none that are useful. Returns 0, or -1 with
+ * *m filled. */
+static int scatter(const encoder *e, ted4_dataset *d, ted4_message *m)
+{
+    ted4_scatter_options o = e->request->bounds;
+    ted4_teller *teller = e->teller;
+    ted4_scattered what;
+
+    now(teller, TED4_TELL_STARTING, "looking for initial points");
+    o.seed = e->request->options.seed;
+    if (ted4_dataset_scatter(d, &o, e->parallel, &what, m) != 0)
+        return -1;
+    if (!leads(e->exchange))
+        return 0;
+    if (what.outside > 0)
+        ted4_teller_error(teller, "warning: %zu initial points outside the bounds are not used",
+                          what.outside);
+    if (what.scattered > 0 && what.given > 0)
+        ted4_teller_error(teller,
+                          "warning: most of the %zu initial points do not lie on what "
+                          "pictures show; %zu others take their place",
+                          what.given, what.scattered);
+    return 0;
+}
+
+/* Loads the scene, and checks or encodes it as requested. Returns the exit status. */
+static int work(const encoder *e)
+{
+    const ted4_request *r = e->request;
+    ted4_teller *teller = e->teller;
+    const ted4_dataset_options wanted = { .downscale = r->downscale,
+                                          .white = !r->black,
+                                          .seed = r->options.seed,
+                                          .cache_bytes = (size_t)r->cache_mib << 20,
+                                          .max_frames = (uint32_t)r->max_frames,
+                                          .premultiplied = r->premultiplied,
+                                          .hold_out = r->hold_out,
+                                          .n_hold_out = r->n_hold_out,
+                                          .unpacking = unpacking,
+                                          .user = teller };
+    ted4_dataset d;
+    ted4_message m;
+    int status = TED4_EXIT_FINE;
+
+    now(teller, TED4_TELL_LOADING, r->scene);
+    ted4_teller_say(teller, "loading %s", r->scene);
+    if (ted4_dataset_load(&d, r->scene, &wanted, &m) != 0) {
+        if (r->check)
+            ted4_check_report(NULL, &r->options, m.text, r->json);
+        return complain(e, m.text);
+    }
+
+    const size_t said = warn(e, &d, 0);
+
+    d.ahead = decoders(e->parallel);
+    say_found(teller, &d);
+    now(teller, TED4_TELL_STARTING, "looking at all pictures");
+
+    const int bad = ted4_dataset_verify(&d, e->parallel, &m) != 0 || scatter(e, &d, &m) != 0;
+
+    if (r->check)
+        ted4_check_report(&d, &r->options, bad ? m.text : NULL, r->json);
+    if (bad)
+        status = complain(e, m.text);
+    warn(e, &d, said);
+    if (status == TED4_EXIT_FINE && !r->check)
+        status = encode(e, &d);
+    ted4_dataset_free(&d);
+    return status;
+}
+
+/* Returns how many threads this process takes; 0: as many as there are cores. */
+static int threads_of(const ted4_request *r, const ted4_exchange *x)
+{
+    const int cores = (int)sysconf(_SC_NPROCESSORS_ONLN);
+
+    if (r->threads > 0 || x == NULL)
+        return r->threads;
+    return cores > (int)x->neighbours ? cores / (int)x->neighbours : 1;
+}
+
+/* Parses the command line: rank 0 first, so that what is wrong with it is said once. Returns a
+ * TED4_REQUEST_ value. */
+static int parse(ted4_request *r, int argc, char **argv, ted4_exchange *x)
+{
+    int parsed = leads(x) ? ted4_request_parse(r, argc, argv) : TED4_REQUEST_GO;
+
+    parsed = ted4_exchange_first(x, parsed);
+    if (leads(x) || parsed != TED4_REQUEST_GO)
+        return parsed;
+    parsed = ted4_request_parse(r, argc, argv);
+    r->quiet = 1;
+    r->verbose = r->json = 0;
+    r->log = NULL;
+    return r->check ? TED4_REQUEST_DONE : parsed;
+}
+
+int ted4_encoder_main(int argc, char **argv, ted4_exchange *x)
+{
+    ted4_request r;
+    ted4_parallel p;
+    ted4_teller teller;
+    const double begin = ted4_seconds();
+    const int parsed = parse(&r, argc, argv, x);
+
+    if (parsed != TED4_REQUEST_GO)
+        return parsed == TED4_REQUEST_DONE ? TED4_EXIT_FINE : TED4_EXIT_TOOL;
+
+    const encoder e = { &r, &p, &teller, r.check ? NULL : x, begin };
+
+    ted4_teller_begin(&teller, "ted4enc", r.quiet);
+    ted4_stop_on_signals(r.quiet);
+
+    int status = check_outputs(&e);
+
+    if (status == TED4_EXIT_FINE) {
+        ted4_threads_init(&p, threads_of(&r, x));
+        status = work(&e);
+        ted4_threads_finish(&p);
+    }
+    if (fflush(stdout) != 0 || ferror(stdout))
+        status = complain(&e, "standard output cannot be written");
+    ted4_teller_end(&teller);
+    return status;
+}

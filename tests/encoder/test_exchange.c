@@ -1,0 +1,205 @@
+/* test_exchange.c - sums over views that several processes have drawn (train/state/exchange.h,
+ * view_exchange.h). The processes are threads here, which exchange through common memory.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "test.h"
+
+#include <pthread.h>
+#include <string.h>
+
+#include "train/state/view_exchange.h"
+
+enum { MOST_RANKS = 6, SIZE = (1 << 22) + 1000, STRIDE = 997 };
+
+/* What the ranks of one run have in common. */
+static struct {
+    pthread_barrier_t barrier;
+    const void *given[MOST_RANKS];
+    size_t n, n_views;
+    float *sum[MOST_RANKS];
+} run;
+
+typedef struct {
+    ted4_exchange x;
+    ted4_view_sums sums;
+    int first;
+} process;
+
+static void wait_for_all(void)
+{
+    pthread_barrier_wait(&run.barrier);
+}
+
+static void gather(void *user, const void *mine, size_t size, void *all)
+{
+    const process *p = user;
+
+    run.given[p->x.rank] = mine;
+    wait_for_all();
+    for (size_t r = 0; r < run.n; r++)
+        memcpy((char *)all + r * size, run.given[r], size);
+    wait_for_all();
+}
+
+static void deal(void *user, const float *from, const size_t *first, size_t n_from, float *to)
+{
+    const process *p = user;
+    const size_t at = first[p->x.rank], own = first[p->x.rank + 1] - at;
+
+    run.given[p->x.rank] = from;
+    wait_for_all();
+    for (size_t r = 0; r < n_from; r++)
+        memcpy(to + r * own, (const float *)run.given[r] + at, own * sizeof *to);
+    wait_for_all();
+}
+
+static void share(void *user, float *all, const size_t *first)
+{
+    const process *p = user;
+
+    run.given[p->x.rank] = all;
+    wait_for_all();
+    for (size_t r = 0; r < run.n; r++)
+        if (r != p->x.rank)
+            memcpy(all + first[r], (const float *)run.given[r] + first[r],
+                   (first[r + 1] - first[r]) * sizeof *all);
+    wait_for_all();
+}
+
+/* Value i of a view: sums of three such numbers depend on their order. */
+static float value(size_t view, size_t i)
+{
+    return 1.0f / (float)(3 + view * 7 + i % STRIDE) * (view % 3 == 1 ? -1e4f : 1.0f);
+}
+
+static float tree(size_t from, size_t to, size_t i)
+{
+    size_t half = 1;
+
+    if (to - from == 1)
+        return value(from, i);
+    while (2 * half < to - from)
+        half *= 2;
+    return tree(from, from + half, i) + tree(from + half, to, i);
+}
+
+/* One process: draws its views, and sums over all. */
+static void *work(void *arg)
+{
+    process *p = arg;
+    size_t first, end;
+
+    ted4_exchange_views(&p->x, run.n_views, &first, &end);
+    assert_int_equal(ted4_view_sums_begin(&p->sums, SIZE, end > first ? end - first : 1) != 0 ||
+                         ted4_view_exchange_begin(&p->x, &p->sums) != 0,
+                     0);
+    for (size_t view = first; view < end; view++) {
+        float *to = ted4_view_sums_next(&p->sums);
+
+        for (size_t i = 0; i < SIZE; i++)
+            to[i] = value(view, i);
+        ted4_view_sums_add(&p->sums, NULL);
+    }
+    run.sum[p->x.rank] = ted4_view_sums_total(&p->sums, NULL);
+    ted4_view_exchange(&p->x, &p->sums, run.n_views, NULL);
+    p->first = ted4_exchange_first(&p->x, p->x.rank < 2 ? 0 : (int)p->x.rank);
+    return NULL;
+}
+
+static void start(process *p, size_t n, size_t n_views)
+{
+    pthread_t thread[MOST_RANKS];
+
+    run.n = n;
+    run.n_views = n_views;
+    pthread_barrier_init(&run.barrier, NULL, (unsigned)n);
+    memset(p, 0, n * sizeof *p);
+    for (size_t r = 0; r < n; r++) {
+        p[r].x = (ted4_exchange) {
+            .rank = r, .n = n, .user = &p[r], .gather = gather, .deal = deal, .share = share
+        };
+        assert_int_equal(pthread_create(&thread[r], NULL, work, &p[r]), 0);
+    }
+    for (size_t r = 0; r < n; r++)
+        pthread_join(thread[r], NULL);
+    pthread_barrier_destroy(&run.barrier);
+}
+
+static void test_sums(void **state)
+{
+    static const struct {
+        size_t ranks, views;
+    } runs[] = { { 1, 4 },  { 2, 2 }, { 2, 4 }, { 2, 3 }, { 3, 4 },
+                 { 3, 16 }, { 4, 2 }, { 4, 7 }, { 5, 5 }, { 6, 13 } };
+    static process p[MOST_RANKS];
+
+    (void)state;
+    for (size_t k = 0; k < sizeof runs / sizeof runs[0]; k++) {
+        const size_t n = runs[k].ranks;
+
+        start(p, n, runs[k].views);
+        for (size_t r = 0; r < n; r++) {
+            for (size_t i = 0; i < SIZE; i += i < STRIDE || i + 1000 > SIZE ? 1 : STRIDE / 2)
+                assert_true(run.sum[r][i] == tree(0, runs[k].views, i));
+            assert_int_equal(p[r].first, n > 2 ? 2 : 0);
+            assert_true(n == 1 || p[r].x.bytes > 0);
+            ted4_view_sums_finish(&p[r].sums);
+        }
+    }
+}
+
+/* Each view belongs to one rank, ranges are nodes of the tree, and no rank has more than twice its
+ * share. One view alone belongs to all. */
+static void test_views(void **state)
+{
+    (void)state;
+    for (size_t n = 1; n <= TED4_MAX_RANKS; n++)
+        for (size_t views = 1; views <= TED4_MAX_VIEWS; views++) {
+            size_t next = 0, drawing = 0;
+
+            for (size_t r = 0; r < n; r++) {
+                const ted4_exchange x = { .rank = r, .n = n };
+                size_t first, end, span = 1;
+
+                ted4_exchange_views(&x, views, &first, &end);
+                if (views == 1) {
+                    assert_true(first == 0 && end == 1);
+                    next = drawing = 1;
+                    continue;
+                }
+                while (span < end - first)
+                    span *= 2;
+                assert_true(first == next && end >= first);
+                assert_true(end == first || first % span == 0);
+                assert_true(end == views || end - first == span);
+                assert_true(end - first < 2 * ((views + n - 1) / n));
+                next = end;
+                drawing += end > first;
+                assert_int_equal(ted4_exchange_drawing(&x, views),
+                                 ted4_exchange_drawing(&(ted4_exchange) { .n = n }, views));
+            }
+            assert_int_equal(next, views);
+            assert_int_equal(drawing, ted4_exchange_drawing(&(ted4_exchange) { .n = n }, views));
+        }
+}
+
+static void test_alone(void **state)
+{
+    size_t first, end;
+    int mine = 7, all = 0;
+
+    (void)state;
+    ted4_exchange_views(NULL, 13, &first, &end);
+    assert_true(first == 0 && end == 13);
+    assert_int_equal(ted4_exchange_drawing(NULL, 13), 1);
+    ted4_exchange_gather(NULL, &mine, sizeof mine, &all);
+    assert_int_equal(all, 7);
+    assert_int_equal(ted4_exchange_first(NULL, 3), 3);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_sums), cmocka_unit_test(test_views),
+                                        cmocka_unit_test(test_alone) };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
