@@ -121,8 +121,10 @@ static void counts(void **state)
 
     (void)state;
     write_tree(&w, 8, n, key);
+    memset(back, 0xff, sizeof back);
     assert_int_equal(read_tree(w.out.data, w.out.size, 8, n - 1, back, &status), 0);
     assert_int_equal(status, TED4_OK);
+    assert_true(back[n - 1] == UINT64_MAX); /* no room for it was promised */
     assert_int_equal(read_tree(w.out.data, w.out.size, 8, n + 1, back, &status), 0);
     assert_int_equal(status, TED4_OK);
     ted4_writer_finish(&w);

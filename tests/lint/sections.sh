@@ -3,8 +3,8 @@
 # 9.2, 9.4", "spec 5 to 10", "spec J.1", "annex D.1", "chapter 14".
 export LC_ALL=C
 bad=0
-headings=$(sed -nE 's/^#+ (Annex )?([0-9A-M][0-9.]*)( .*)?$/\2/p' spec/[0-9]*.md spec/annex-*.md)
-number='([A-M]|[0-9]+)(\.[0-9]+)*\b'
+headings=$(sed -nE 's/^#+ (Annex )?([0-9A-N][0-9.]*)( .*)?$/\2/p' spec/[0-9]*.md spec/annex-*.md)
+number='([A-N]|[0-9]+)(\.[0-9]+)*\b'
 cited="\b([Ss]pec|[Aa]nnex(es)?|[Cc]hapters?) $number((,| to| and|, and) $number)*"
 for n in $(grep -rhoE "$cited" ref-decoder ref-encoder conformance tests fuzz bench tools doc .ci \
     Makefile README.md \

@@ -11,8 +11,8 @@ for f in spec/[0-9]*.md spec/annex-*.md spec/errata.md; do
     grep -q "($(basename "$f"))" spec/README.md ||
         { echo "$f: not in the table of spec/README.md"; bad=1; }
 done
-headings=$(sed -nE 's/^#+ (Annex )?([0-9A-M][0-9.]*)( .*)?$/\2/p' spec/[0-9]*.md spec/annex-*.md)
-for n in $(grep -ohE '\b([1-9][0-9]?\.[0-9]+|[A-M]\.[0-9]+)\)' spec/[0-9]*.md spec/annex-[c-m]*.md \
+headings=$(sed -nE 's/^#+ (Annex )?([0-9A-N][0-9.]*)( .*)?$/\2/p' spec/[0-9]*.md spec/annex-*.md)
+for n in $(grep -ohE '\b([1-9][0-9]?\.[0-9]+|[A-N]\.[0-9]+)\)' spec/[0-9]*.md spec/annex-[c-n]*.md \
     spec/README.md | tr -d ')' | sort -u); do
     echo "$headings" | grep -qxF "$n" ||
         { echo "spec: section $n is cited, but no such heading"; bad=1; }
