@@ -122,8 +122,7 @@ static int run(const encoder *e, ted4_trainer *t)
     if (!bad && r->target_size > 0)
         bad = ted4_training_target(&training, &coded) != 0;
     else if (!bad)
-        bad = ted4_training_go(&training, ted4_trainer_total(t)) != 0 ||
-              ted4_training_code(&training, &coded) != 0;
+        bad = ted4_training_go(&training, 2) != 0 || ted4_training_code(&training, &coded) != 0;
     /* The file is written before the log is closed, so that it is not lost if closing fails. */
     if (leads(e->exchange))
         bad = bad || ted4_file_write(r->out, coded.bytes, coded.size, training.why,

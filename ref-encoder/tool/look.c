@@ -61,7 +61,8 @@ static ted4_work work_of(ted4_training *t)
                     .mv_seed_at = 0.3,
                     .most_anchors = tr->opt.max_anchors,
                     .trials = trials_left(tr),
-                    .step = (double)tr->iteration,
+                    .step = (double)(ted4_stage_position(tr) +
+                                     (tr->phase.stage2 ? (uint64_t)tr->opt.stage1 : 0)),
                     .anchors = (double)tr->anchors.n,
                     .probing = o->busy == TED4_BUSY_PROBE };
 

@@ -54,7 +54,7 @@ static int one_trial(ted4_training *t, const ted4_snapshot *start, double lambda
     }
     ted4_run_log_rewind(&t->log, t->trainer);
     ted4_training_rewound(t);
-    if (ted4_training_go(t, ted4_trainer_total(t->trainer)) != 0 || ted4_training_code(t, c) != 0)
+    if (ted4_training_go(t, 2) != 0 || ted4_training_code(t, c) != 0)
         return -1;
     ted4_teller_say(t->teller, "lambda %.5g: %zu bytes", lambda, c->size);
     return 0;
@@ -115,7 +115,7 @@ int ted4_training_target(ted4_training *t, ted4_coded *c)
                  t->checkpoint);
         return -1;
     }
-    if (ted4_training_go(t, (uint64_t)t->trainer->opt.stage1) != 0)
+    if (ted4_training_go(t, 1) != 0)
         return -1;
     t->checkpoint = NULL; /* trials cannot be resumed: a checkpoint lacks the state of the search */
     bad = ted4_snapshot_take(t->trainer, &start) != 0;

@@ -54,7 +54,7 @@ static int find_start(ted4_training *t)
     } else if (exists(r->stage1)) {
         if (ted4_checkpoint_load(trainer, r->stage1) != 0)
             return fail(t);
-        if (trainer->phase.stage2 || trainer->iteration != (uint64_t)trainer->opt.stage1) {
+        if (!ted4_at_stage1_end(trainer)) {
             snprintf(t->why, sizeof t->why, "%s: not the end of stage 1", r->stage1);
             return -1;
         }
@@ -173,8 +173,7 @@ static int keep_stage1(ted4_training *t)
     ted4_trainer *tr = t->trainer;
     const char *path = t->request->stage1;
 
-    if (path == NULL || !leads(t) || tr->phase.stage2 ||
-        tr->iteration != (uint64_t)tr->opt.stage1 || exists(path))
+    if (path == NULL || !leads(t) || !ted4_at_stage1_end(tr) || exists(path))
         return 0;
     ted4_run_log_tick(&t->log, tr);
     return ted4_checkpoint_save(tr, path) != 0 ? fail(t) : 0;
@@ -212,6 +211,19 @@ static int tell_poses(ted4_training *t)
     return ted4_run_log_poses(&t->log, t->trainer, t->why, sizeof t->why);
 }
 
+/* Reports what the judge has measured and decided. */
+static int tell_judge(ted4_training *t)
+{
+    const ted4_trainer *tr = t->trainer;
+    const uint64_t steps = tr->judge.state.left_out;
+
+    if (steps > 0)
+        ted4_teller_say(t->teller,
+                        "judge: pictures at rest stand still; %llu steps of stage %d are left out",
+                        (unsigned long long)steps, tr->phase.stage2 ? 2 : 1);
+    return ted4_run_log_judge(&t->log, tr, t->why, sizeof t->why);
+}
+
 /* Handles a failed step. If the cause is an anomaly, it becomes the last line of the log. */
 static int fail_step(ted4_training *t)
 {
@@ -231,6 +243,7 @@ static int step(ted4_training *t)
     const size_t trials = tr->search.n_trials;
     const ted4_poses_decision poses = tr->poses.decision;
     const int closed = tr->closing.moving > 0;
+    const uint64_t windows = tr->judge.state.windows;
 
     if (ted4_trainer_step(tr) != 0)
         return fail_step(t);
@@ -243,6 +256,8 @@ static int step(ted4_training *t)
         return -1;
     if (!closed && tr->closing.moving > 0 &&
         ted4_run_log_closing(&t->log, tr, t->why, sizeof t->why) != 0)
+        return -1;
+    if (tr->judge.state.windows > windows && tell_judge(t) != 0)
         return -1;
     if (tr->search.n_trials > trials &&
         ted4_run_log_trials(&t->log, tr, trials, t->why, sizeof t->why) != 0)
@@ -260,13 +275,19 @@ static int before_long_step(ted4_training *t)
                : 0;
 }
 
-int ted4_training_go(ted4_training *t, uint64_t steps)
+/* Returns whether so many stages are complete. */
+static int is_done(const ted4_trainer *t, int stages)
+{
+    return t->iteration == ted4_trainer_total(t) || (stages == 1 && ted4_at_stage1_end(t));
+}
+
+int ted4_training_go(ted4_training *t, int stages)
 {
     ted4_trainer *tr = t->trainer;
     double saved = ted4_seconds();
 
     ted4_run_log_skip(&t->log);
-    while (tr->iteration < steps) {
+    while (!is_done(tr, stages)) {
         const uint64_t before = tr->iteration;
 
         if (ted4_training_asked(t))
@@ -275,7 +296,7 @@ int ted4_training_go(ted4_training *t, uint64_t steps)
             return -1;
         if (step(t) != 0)
             return -1;
-        if ((tr->iteration / REPORT_EVERY > before / REPORT_EVERY || tr->iteration == steps) &&
+        if ((tr->iteration / REPORT_EVERY > before / REPORT_EVERY || is_done(tr, stages)) &&
             log_step(t) != 0)
             return -1;
         if (ted4_seconds() - saved >= t->request->checkpoint_every && ted4_monitor_calm(tr)) {

@@ -46,9 +46,9 @@ int ted4_training_begin(ted4_training *t, const ted4_request *r, ted4_trainer *t
  * t->why filled: bad was not 0, or the log could not be closed. */
 int ted4_training_end(ted4_training *t, int bad);
 
-/* Trains until the trainer has done this many steps. Writes checkpoints, and the --stage1 file at
- * the end of stage 1. Returns 0, or -1 with t->why filled. */
-int ted4_training_go(ted4_training *t, uint64_t steps);
+/* Trains to the end of stage 1 (stages = 1) or of stage 2 (2). Writes checkpoints, and the --stage1
+ * file at the end of stage 1. Returns 0, or -1 with t->why filled. */
+int ted4_training_go(ted4_training *t, int stages);
 /* Codes the current scene and verifies the result. Returns 0, or -1 with t->why filled. */
 int ted4_training_code(ted4_training *t, ted4_coded *c);
 void ted4_coded_free(ted4_coded *c);

@@ -8,80 +8,25 @@
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-#include <xxhash.h>
 
 #include "monitor.h"
+#include "state_stream.h"
 #include "train/math/voxel_set.h"
 #include "train/model/header_from_options.h"
 
 #define MAGIC 0x34444554u /* "TED4" */
-enum { FORMAT = 12 };
+enum { FORMAT = 13 };
 
-/* One walk serves both directions: put() writes or reads the bytes at p. whole: includes the
- * monitor's last good state. left: when reading, the bytes of the file that put() has not read
- * yet; anchors get memory only if these bytes can fill it. Snapshots are often taken and restored,
- * by one thread, while all others wait; therefore they are copied to and from memory directly,
- * without a FILE. */
-typedef struct {
-    FILE *file; /* NULL if the stream is in memory */
-    ted4_snapshot *memory;
-    size_t at, capacity; /* in memory: the reading position; the allocated bytes when writing */
-    int writing, whole, failed;
-    XXH3_state_t *hash;
-    uint64_t left;
-} stream;
-
-/* Returns 0, or -1 if memory ran out. */
-static int append(stream *s, const void *p, size_t size)
-{
-    ted4_snapshot *m = s->memory;
-
-    if (size > s->capacity - m->size) {
-        const size_t capacity = 2 * s->capacity > m->size + size ? 2 * s->capacity : m->size + size;
-        char *bytes = realloc(m->bytes, capacity);
-
-        if (bytes == NULL)
-            return -1;
-        m->bytes = bytes;
-        s->capacity = capacity;
-    }
-    memcpy(m->bytes + m->size, p, size);
-    m->size += size;
-    return 0;
-}
-
-static int get(stream *s, void *p, size_t size)
-{
-    if (size > s->memory->size - s->at)
-        return -1;
-    memcpy(p, s->memory->bytes + s->at, size);
-    s->at += size;
-    return 0;
-}
+typedef ted4_state_stream stream;
 
 static void put(stream *s, void *p, size_t size)
 {
-    if (s->failed || size == 0)
-        return;
-    if (s->file != NULL)
-        s->failed = (s->writing ? fwrite(p, 1, size, s->file) : fread(p, 1, size, s->file)) != size;
-    else
-        s->failed = (s->writing ? append(s, p, size) : get(s, p, size)) != 0;
-    if (s->failed)
-        return;
-    s->left -= s->writing ? 0 : size;
-    /* A snapshot in memory was verified as a whole (intact_memory). */
-    if (s->writing || s->file != NULL)
-        XXH3_64bits_update(s->hash, p, size);
+    ted4_state_put(s, p, size);
 }
 
-/* Writes value, or reads a number, which must then be equal to value. */
 static void expect(stream *s, uint64_t value)
 {
-    uint64_t x = value;
-
-    put(s, &x, sizeof x);
-    s->failed |= x != value;
+    ted4_state_expect(s, value);
 }
 
 /* Does the same as expect(), and fills t->message with both numbers if they differ. */
@@ -255,7 +200,7 @@ static int order_is_whole(const ted4_trainer *t)
 {
     const ted4_order *o = &t->order;
     uint8_t *seen = calloc(t->data->n_pictures + 1, 1);
-    int whole = seen != NULL && o->next <= o->n;
+    int whole = seen != NULL && o->rest <= o->n && o->next <= o->n - o->rest;
 
     for (uint32_t i = 0; whole && i < o->n; i++) {
         const uint32_t p = o->item[i];
@@ -273,11 +218,13 @@ static int numbers_are_possible(const ted4_trainer *t)
 {
     return (t->phase.stage2 == 0 || t->phase.stage2 == 1) &&
            (t->phase.integer == 0 || t->phase.integer == 1) &&
-           t->phase.integer <= t->phase.stage2 && t->iteration <= ted4_trainer_total(t) &&
-           t->phase.stage2_start <= t->iteration && t->voxel >= TED4_FINEST_VOXEL &&
-           t->voxel <= 1e30 && t->search.decided >= TED4_DECIDED_NOTHING &&
-           t->search.decided <= TED4_DECIDED_ALL && t->monitor.state.factor > 0 &&
-           t->monitor.state.factor <= 1 && t->monitor.state.rollbacks <= TED4_ROLLBACKS;
+           t->phase.integer <= t->phase.stage2 && t->phase.left_out[0] <= (uint64_t)t->opt.stage1 &&
+           t->phase.left_out[1] <= (uint64_t)t->opt.stage2 &&
+           t->iteration <= ted4_trainer_total(t) && t->phase.stage2_start <= t->iteration &&
+           t->voxel >= TED4_FINEST_VOXEL && t->voxel <= 1e30 &&
+           t->search.decided >= TED4_DECIDED_NOTHING && t->search.decided <= TED4_DECIDED_ALL &&
+           t->monitor.state.factor > 0 && t->monitor.state.factor <= 1 &&
+           t->monitor.state.rollbacks <= TED4_ROLLBACKS;
 }
 
 /* Writes or reads the last good state. It is a state of this format, and is checked when it is
@@ -376,6 +323,17 @@ static void walk_poses(stream *s, ted4_trainer *t)
                  !(p->decision >= TED4_POSES_ON_TRIAL && p->decision <= TED4_POSES_GIVEN);
 }
 
+static void walk_judge(stream *s, ted4_trainer *t)
+{
+    ted4_judge_state *j = &t->judge.state;
+
+    expect(s, t->judge.group != NULL);
+    put(s, j, sizeof *j);
+    s->failed |= !s->writing && !s->failed &&
+                 !(j->resting <= (t->judge.group != NULL ? TED4_JUDGE_GROUPS : 0) &&
+                   j->begin <= t->iteration);
+}
+
 static void expect_digest(stream *s, ted4_trainer *t)
 {
     const int before = s->failed;
@@ -404,6 +362,7 @@ static void walk(stream *s, ted4_trainer *t)
     put(s, &t->seconds, sizeof t->seconds);
     put(s, &t->phase.integer, sizeof t->phase.integer);
     put(s, &t->phase.stage2_start, sizeof t->phase.stage2_start);
+    put(s, t->phase.left_out, sizeof t->phase.left_out);
     put(s, &t->search.probed, sizeof t->search.probed);
     put(s, t->search.probe_loss, sizeof t->search.probe_loss);
     put(s, &t->closing, sizeof t->closing);
@@ -413,6 +372,8 @@ static void walk(stream *s, ted4_trainer *t)
     put(s, t->order.item, t->order.n * sizeof *t->order.item);
     put(s, &t->order.next, sizeof t->order.next);
     put(s, &t->order.round, sizeof t->order.round);
+    put(s, &t->order.rest, sizeof t->order.rest);
+    walk_judge(s, t);
     s->failed |= !s->writing && !s->failed && !(order_is_whole(t) && numbers_are_possible(t));
     walk_colour(s, t);
     walk_poses(s, t);
@@ -421,52 +382,6 @@ static void walk(stream *s, ted4_trainer *t)
         walk_networks(s, t);
     if (s->whole)
         walk_good(s, t);
-}
-
-static int intact_memory(stream *s)
-{
-    const ted4_snapshot *m = s->memory;
-    uint64_t want;
-
-    if (m->size < sizeof want)
-        return 0;
-    s->left = m->size;
-    XXH3_64bits_update(s->hash, m->bytes, m->size - sizeof want);
-    memcpy(&want, m->bytes + m->size - sizeof want, sizeof want);
-    return XXH3_64bits_digest(s->hash) == want;
-}
-
-/* Returns whether the last eight bytes are the hash of all others. Call before anything in the
- * file is trusted. On success the file is at its start again. */
-static int intact_file(stream *s)
-{
-    uint8_t bytes[1 << 14];
-    uint64_t want;
-    long left = fseek(s->file, 0, SEEK_END) == 0 ? ftell(s->file) - (long)sizeof want : -1;
-
-    if (left < 0 || fseek(s->file, 0, SEEK_SET) != 0)
-        return 0;
-    s->left = (uint64_t)left + sizeof want;
-    while (left > 0) {
-        const size_t n = left < (long)sizeof bytes ? (size_t)left : sizeof bytes;
-
-        if (fread(bytes, 1, n, s->file) != n)
-            return 0;
-        XXH3_64bits_update(s->hash, bytes, n);
-        left -= (long)n;
-    }
-    return fread(&want, 1, sizeof want, s->file) == sizeof want &&
-           XXH3_64bits_digest(s->hash) == want && fseek(s->file, 0, SEEK_SET) == 0;
-}
-
-static void walk_hash(stream *s)
-{
-    uint64_t hash = XXH3_64bits_digest(s->hash);
-
-    if (s->writing || s->file != NULL)
-        expect(s, hash);
-    else
-        put(s, &hash, sizeof hash);
 }
 
 /* Runs the walk on file or, if file is NULL, on memory. When writing, memory must be empty, but
@@ -484,10 +399,10 @@ static int run(ted4_trainer *t, FILE *file, ted4_snapshot *memory, size_t capaci
     if (s.hash == NULL)
         return -1;
     XXH3_64bits_reset(s.hash);
-    s.failed = !writing && !(file != NULL ? intact_file(&s) : intact_memory(&s));
+    s.failed = !writing && !ted4_state_intact(&s);
     XXH3_64bits_reset(s.hash);
     walk(&s, t);
-    walk_hash(&s);
+    ted4_state_hash(&s);
     XXH3_freeState(s.hash);
     return s.failed ? -1 : 0;
 }

@@ -96,8 +96,7 @@ int ted4_monitor_due(const ted4_trainer *t)
     const uint64_t i = t->iteration;
 
     return !t->monitor.pinned && is_calm(&t->monitor.state) &&
-           (i % KEEP_EVERY == KEEP_AT || i == (uint64_t)t->opt.stage1 ||
-            i == ted4_trainer_total(t));
+           (i % KEEP_EVERY == KEEP_AT || ted4_at_stage1_end(t) || i == ted4_trainer_total(t));
 }
 
 void ted4_monitor_forget(ted4_trainer *t)

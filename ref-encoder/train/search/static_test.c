@@ -24,7 +24,8 @@ enum { FEWEST = 200 };
 
 int ted4_probe_due(const ted4_trainer *t)
 {
-    return !t->search.probed && t->iteration == (uint64_t)(PROBE_FROM * (double)t->opt.stage1);
+    return !t->search.probed &&
+           ted4_stage_position(t) == (uint64_t)(PROBE_FROM * (double)t->opt.stage1);
 }
 
 static int has_time(const ted4_trainer *t)

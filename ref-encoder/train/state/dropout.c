@@ -25,7 +25,7 @@ double ted4_dropout_most(const ted4_trainer *t)
 
 double ted4_dropout_share(const ted4_trainer *t)
 {
-    const double done = (double)t->iteration / fmax(1.0, (double)t->opt.stage1);
+    const double done = (double)ted4_stage_position(t) / fmax(1.0, (double)t->opt.stage1);
 
     return t->phase.stage2 ? 0.0 : ted4_dropout_most(t) * done;
 }

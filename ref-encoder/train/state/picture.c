@@ -102,7 +102,7 @@ int ted4_trainer_corrected(const ted4_trainer *t, const ted4_picture *pic)
 {
     return ted4_colour_has(&t->colour, pic->camera_id) &&
            (t->colour.matched || t->phase.stage2 ||
-            (double)t->iteration >= t->opt.colour_start * (double)t->opt.stage1);
+            (double)ted4_stage_position(t) >= t->opt.colour_start * (double)t->opt.stage1);
 }
 
 /* Returns t->work.image in the colours of the picture's camera. */

@@ -28,9 +28,16 @@ static double seed_at(const ted4_trainer *t)
     return ted4_sv_seed_applies(t) ? SEED_AT_SINGLE_VIEW : SEED_AT;
 }
 
-static uint64_t seed_step(const ted4_trainer *t, double at)
+/* Returns a step of stage 1. */
+static uint64_t stage1_step(const ted4_trainer *t, double at)
 {
     return (uint64_t)(at * (double)t->opt.stage1);
+}
+
+/* Returns the step of stage 2 with which the integer stage begins. */
+static uint64_t integer_step(const ted4_trainer *t)
+{
+    return (uint64_t)((1.0 - t->opt.integer_share) * (double)t->opt.stage2);
 }
 
 /* Returns whether the scene gets new anchors by one of the two kinds of seeding. */
@@ -42,16 +49,18 @@ static int has_seeding(const ted4_trainer *t)
 /* Returns whether seeding is still to come, so that anchors are reserved for it. */
 static int seeding_ahead(const ted4_trainer *t)
 {
-    return !t->phase.stage2 && t->iteration < seed_step(t, SEED_AT) && has_seeding(t) &&
-           t->iteration < seed_step(t, seed_at(t));
+    return !t->phase.stage2 && ted4_stage_position(t) < stage1_step(t, SEED_AT) && has_seeding(t) &&
+           ted4_stage_position(t) < stage1_step(t, seed_at(t));
 }
 
 static int seeding_due(const ted4_trainer *t)
 {
-    if (t->phase.stage2 || (t->iteration != seed_step(t, SEED_AT) &&
-                            t->iteration != seed_step(t, SEED_AT_SINGLE_VIEW)))
+    const uint64_t now = ted4_stage_position(t);
+
+    if (t->phase.stage2 ||
+        (now != stage1_step(t, SEED_AT) && now != stage1_step(t, SEED_AT_SINGLE_VIEW)))
         return 0;
-    return has_seeding(t) && t->iteration == seed_step(t, seed_at(t));
+    return has_seeding(t) && now == stage1_step(t, seed_at(t));
 }
 
 void ted4_schedule_growth(const ted4_trainer *t, double *from, double *mv_seed_at,
@@ -82,16 +91,30 @@ static int seed(ted4_trainer *t)
 
 int ted4_integer_due(const ted4_trainer *t)
 {
-    const double first = (1.0 - t->opt.integer_share) * (double)t->opt.stage2;
+    return t->phase.stage2 && !t->phase.integer && ted4_stage_position(t) >= integer_step(t);
+}
 
-    return t->phase.stage2 && !t->phase.integer &&
-           t->iteration >= (uint64_t)t->opt.stage1 + (uint64_t)first;
+uint64_t ted4_schedule_next(const ted4_trainer *t)
+{
+    const double stage1 = (double)t->opt.stage1;
+    const uint64_t now = ted4_stage_position(t),
+                   event[] = { stage1_step(t, SEED_AT_SINGLE_VIEW), stage1_step(t, SEED_AT),
+                               ted4_activation_step(&t->opt), stage1_step(t, t->opt.grow_until),
+                               stage1_step(t, CLOSE_AT) };
+    uint64_t next = (uint64_t)(t->phase.stage2 ? t->opt.stage2 : stage1);
+
+    if (t->phase.stage2)
+        return now < integer_step(t) ? integer_step(t) : next;
+    for (size_t i = 0; i < sizeof event / sizeof *event; i++)
+        if (event[i] > now && event[i] < next)
+            next = event[i];
+    return next;
 }
 
 int ted4_schedule_event(ted4_trainer *t)
 {
     const ted4_train_options *o = &t->opt;
-    const uint64_t i = t->iteration, stage1 = (uint64_t)o->stage1;
+    const uint64_t i = ted4_stage_position(t), stage1 = (uint64_t)o->stage1;
 
     ted4_poses_decide(t);
     if (t->layout.first[TED4_TAU] >= 0 && !t->phase.stage2 && i == ted4_activation_step(o) &&
@@ -106,7 +129,7 @@ int ted4_schedule_event(ted4_trainer *t)
     if (!t->phase.stage2 && i == (uint64_t)(CLOSE_AT * (double)stage1) &&
         ted4_close_still_anchors(t) != 0)
         return -1;
-    if (i == stage1 && !t->phase.stage2 && o->stage2 > 0 && ted4_stage2_begin(t) != 0)
+    if (ted4_at_stage1_end(t) && o->stage2 > 0 && ted4_stage2_begin(t) != 0)
         return -1;
     if (ted4_integer_due(t) && ted4_integer_begin(t) != 0)
         return -1;

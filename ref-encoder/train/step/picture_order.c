@@ -6,9 +6,28 @@
 
 #include "train/math/random.h"
 
-static void shuffle(ted4_order *o)
+/* Moves pictures that rest (stage_judge.h) behind all others. Returns how many these are. */
+static uint32_t put_to_rest(ted4_trainer *t)
 {
-    for (uint32_t i = o->n; i > 1; i--) {
+    ted4_order *o = &t->order;
+    uint32_t n = 0;
+
+    for (uint32_t i = 0; i < o->n && t->judge.state.resting > 0; i++) {
+        const uint32_t x = o->item[i];
+
+        if (t->judge.group[x] == t->judge.state.resting) {
+            n++;
+        } else {
+            o->item[i] = o->item[i - n];
+            o->item[i - n] = x;
+        }
+    }
+    return n;
+}
+
+static void shuffle(ted4_order *o, uint32_t n)
+{
+    for (uint32_t i = n; i > 1; i--) {
         const uint32_t j = ted4_below(o->key, o->round << 32 | i, i);
         const uint32_t x = o->item[i - 1];
 
@@ -36,12 +55,12 @@ static int compare_cards(const void *x, const void *y)
 
 /* Divides c[n], sorted by time, into batches of at most `most` pictures, of sizes as equal as
  * possible, and gives each a random place. */
-static void make_batches(const ted4_order *o, card *c, uint32_t most)
+static void make_batches(const ted4_order *o, card *c, uint32_t n, uint32_t most)
 {
     uint64_t batch = 0;
 
-    for (uint32_t from = 0, to; from < o->n; from = to) {
-        for (to = from; to < o->n && c[to].major == c[from].major;)
+    for (uint32_t from = 0, to; from < n; from = to) {
+        for (to = from; to < n && c[to].major == c[from].major;)
             to++;
 
         const uint32_t count = to - from, parts = (count + most - 1) / most;
@@ -50,30 +69,30 @@ static void make_batches(const ted4_order *o, card *c, uint32_t most)
             for (uint32_t i = count * part / parts; i < count * (part + 1) / parts; i++)
                 c[from + i].minor = ted4_random(~o->key, o->round << 32 | batch);
     }
-    for (uint32_t i = 0; i < o->n; i++) {
+    for (uint32_t i = 0; i < n; i++) {
         c[i].major = c[i].minor;
         c[i].minor = i;
     }
 }
 
 /* Does the same as shuffle(), with the pictures of a batch next to one another. */
-static int shuffle_batches(ted4_trainer *t)
+static int shuffle_batches(ted4_trainer *t, uint32_t n)
 {
     ted4_order *o = &t->order;
-    card *c = malloc((o->n + 1) * sizeof *c);
+    card *c = malloc((n + 1) * sizeof *c);
 
     if (c == NULL)
         return ted4_trainer_fail(t, "no memory for the order of pictures");
-    for (uint32_t i = 0; i < o->n; i++) {
+    for (uint32_t i = 0; i < n; i++) {
         const uint32_t item = o->item[i];
 
         c[i] = (card) { t->data->pictures[item].frame, ted4_random(o->key, o->round << 32 | item),
                         item };
     }
-    qsort(c, o->n, sizeof *c, compare_cards);
-    make_batches(o, c, (uint32_t)t->opt.batch);
-    qsort(c, o->n, sizeof *c, compare_cards);
-    for (uint32_t i = 0; i < o->n; i++)
+    qsort(c, n, sizeof *c, compare_cards);
+    make_batches(o, c, n, (uint32_t)t->opt.batch);
+    qsort(c, n, sizeof *c, compare_cards);
+    for (uint32_t i = 0; i < n; i++)
         o->item[i] = c[i].item;
     free(c);
     return 0;
@@ -86,7 +105,7 @@ static size_t batch_at(const ted4_trainer *t, size_t at)
     const ted4_picture *pic = t->data->pictures;
     size_t n = 1;
 
-    while (n < (size_t)t->opt.batch && at + n < o->n &&
+    while (n < (size_t)t->opt.batch && at + n < o->n - o->rest &&
            pic[o->item[at + n]].frame == pic[o->item[at]].frame)
         n++;
     return n;
@@ -99,7 +118,7 @@ static void announce(const ted4_trainer *t)
     const ted4_order *o = &t->order;
     int left = TED4_DATASET_AHEAD;
 
-    for (size_t at = o->next; at < o->n && left > 0;) {
+    for (size_t at = o->next; at < o->n - o->rest && left > 0;) {
         const size_t n = batch_at(t, at);
         size_t first, end;
 
@@ -114,11 +133,12 @@ int ted4_next_pictures(ted4_trainer *t, const uint32_t **item, size_t *n)
 {
     ted4_order *o = &t->order;
 
-    if (o->next >= o->n) {
-        if (t->opt.batch > 1 && shuffle_batches(t) != 0)
+    if (o->next >= o->n - o->rest) {
+        o->rest = put_to_rest(t);
+        if (t->opt.batch > 1 && shuffle_batches(t, o->n - o->rest) != 0)
             return -1;
         if (t->opt.batch == 1)
-            shuffle(o);
+            shuffle(o, o->n - o->rest);
         o->round++;
         o->next = 0;
     }

@@ -120,7 +120,7 @@ void ted4_poses_decide(ted4_trainer *t)
     double sum = 0;
 
     if (p->n == 0 || p->decision != TED4_POSES_ON_TRIAL ||
-        t->iteration < (uint64_t)(TRIAL * (double)t->opt.stage1))
+        ted4_stage_position(t) < (uint64_t)(TRIAL * (double)t->opt.stage1))
         return;
     for (size_t i = 0; i < p->n; i++)
         sum += squares_moved(t, i);

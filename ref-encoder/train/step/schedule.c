@@ -34,9 +34,8 @@
 
 static double stage_progress(const ted4_trainer *t)
 {
-    const double done = (double)(t->iteration - (t->phase.stage2 ? t->phase.stage2_start : 0));
-
-    return done / fmax(1.0, t->phase.stage2 ? t->opt.stage2 : t->opt.stage1);
+    return (double)ted4_stage_position(t) /
+           fmax(1.0, t->phase.stage2 ? t->opt.stage2 : t->opt.stage1);
 }
 
 uint64_t ted4_activation_step(const ted4_train_options *o)
@@ -48,7 +47,7 @@ uint64_t ted4_activation_step(const ted4_train_options *o)
 static int activation_learnt(const ted4_trainer *t)
 {
     return t->layout.first[TED4_TAU] >= 0 &&
-           (t->phase.stage2 || t->iteration >= ted4_activation_step(&t->opt));
+           (t->phase.stage2 || ted4_stage_position(t) >= ted4_activation_step(&t->opt));
 }
 
 static void fill(float *rate, int first, int n, double value)
