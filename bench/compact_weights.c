@@ -6,12 +6,9 @@
 #include <stdlib.h>
 #include "compact.h"
 #include "compact_counter.h"
-#include "norm/coded_integer.h"
+#include "norm/coded_weights.h"
 #include "norm/prior.h"
 #include "write/deflate.h"
-
-/* The largest integers of the coder have 31 bits; a unit with larger ones stays binary32. */
-#define LARGEST 0x1p31
 
 typedef struct {
     compact_counter counter;
@@ -22,20 +19,6 @@ static void begin(weight_coder *w)
 {
     w->counter = (compact_counter) { .base = { .ops = &compact_counter_ops } };
     ted4_integer_model_init(&w->model);
-}
-
-/* Codes x[n] in units of 2^exponent. */
-static void code_row(weight_coder *w, const float *x, size_t n, int exponent)
-{
-    unsigned before = 0, last = 0;
-
-    for (size_t i = 0; i < n; i++) {
-        const int32_t k = (int32_t)ldexp((double)x[i], -exponent);
-
-        ted4_code_integer(&w->counter.base, &w->model, (before + last + 1) / 2, k);
-        before = last;
-        last = ted4_integer_length(k);
-    }
 }
 
 /* The exponent of the lowest bit that is set in any of x[n]; 0 if all are zero. */
@@ -59,21 +42,22 @@ static int grid_of(const float *x, size_t n, double *most)
     return lowest;
 }
 
-static void code_unit(weight_coder *w, const float *x, size_t n)
+/* A unit with larger integers than the coder has stays binary32. */
+static void code_unit(weight_coder *w, float *x, size_t n)
 {
     double most;
     const int e = grid_of(x, n, &most);
 
     w->counter.bits += 8;
-    if (ldexp(most, -e) < LARGEST)
-        code_row(w, x, n, e);
+    if (ldexp(most, -e) < ldexp(1, TED4_WEIGHT_BITS))
+        ted4_code_weights(&w->counter.base, &w->model, e, x, n);
     else
         w->counter.bits += 32.0 * (double)n;
 }
 
 static double nete_bits(const ted4_scene *s, const ted4_net_shape *n, int hyper)
 {
-    const float *x = s->nete.values + n->first;
+    float *x = s->nete.values + n->first;
     const uint8_t *shift = s->shift + n->first_unit;
     double bits = 0;
 
@@ -85,8 +69,9 @@ static double nete_bits(const ted4_scene *s, const ted4_net_shape *n, int hyper)
         begin(&w);
         begin(&b);
         for (unsigned o = 0; o < out; o++) {
-            code_row(&w, x + (size_t)o * in, in, -shift[o]);
-            code_row(&b, x + (size_t)out * in + o, 1, -(shift[o] + rule.f));
+            ted4_code_weights(&w.counter.base, &w.model, -shift[o], x + (size_t)o * in, in);
+            ted4_code_weights(&b.counter.base, &b.model, -(shift[o] + rule.f),
+                              x + (size_t)out * in + o, 1);
         }
         bits += w.counter.bits + b.counter.bits;
         x += ted4_layer_size(n, i);
@@ -110,7 +95,7 @@ double compact_netr(const ted4_scene *s)
 
     for (int net = 0; net < TED4_NETS_R; net++) {
         const ted4_net_shape *const n = &s->shape.netr[net];
-        const float *x = s->netr.values + n->first;
+        float *x = s->netr.values + n->first;
 
         for (unsigned i = 0; i < n->n_layers; i++) {
             const size_t in = n->dim[i], out = n->dim[i + 1];

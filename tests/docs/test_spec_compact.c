@@ -1,12 +1,12 @@
 /* test_spec_compact.c - the code that annex N prints for the draft of profile Compact, against the
- * library's coders of the same things (norm/octree.h, norm/coded_integer.h): what these write, it
+ * library's coders of the same things (norm/octree.h, norm/coded_weights.h): what these write, it
  * reads, and of damaged substreams both say the same.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "spec_model.h" /* first: its fail() is a function, that of cmocka a macro */
 #include "spec/compact.h"
 #include "test.h"
 
-#include "norm/coded_integer.h"
+#include "norm/coded_weights.h"
 #include "norm/half.h"
 #include "norm/octree.h"
 #include "random_scene.h"
@@ -117,7 +117,7 @@ static void damaged(void **state)
     ted4_scene_free(s);
 }
 
-static void weights(void **state)
+static void integers(void **state)
 {
     enum { N = 5000 };
     static int32_t x[N];
@@ -144,13 +144,77 @@ static void weights(void **state)
     ted4_writer_finish(&w);
 }
 
+/* Units of all lengths and exponents, those among them whose values binary32 does not have. */
+static void weights(void **state)
+{
+    enum { UNITS = 400, MOST = 60 };
+    static float x[UNITS][MOST], back[MOST];
+    static uint32_t printed[MOST];
+    static struct integers m;
+    random_source r = random_seed(5);
+    ted4_integer_model model;
+    ted4_writer w;
+    ted4_reader d;
+    struct coder c;
+    uint32_t size;
+
+    (void)state;
+    ted4_integer_model_init(&model);
+    begin(&w);
+    for (int u = 0; u < UNITS; u++) {
+        for (int i = 0; i < MOST; i++) {
+            const int32_t k = (int32_t)(random_u32(&r) >> 8 >> random_in(&r, 0, 24));
+
+            x[u][i] = ldexpf((float)(i % 3 ? k : -k), u % 200 - 100);
+        }
+        ted4_code_weights(&w.base, &model, u % 200 - 100, x[u], (size_t)(u % MOST));
+    }
+    w.base.ops->close(&w.base);
+    ted4_integer_model_init(&model);
+    reset_integers(&m);
+    ted4_reader_init(&d, w.out.data, 0, w.out.size, 0);
+    d.base.ops->sizes(&d.base, &size, 1);
+    d.base.ops->open(&d.base, 1);
+    c = opened(w.out.data, w.out.size);
+    for (int u = 0; u < UNITS; u++) {
+        const size_t n = (size_t)(u % MOST);
+
+        ted4_code_weights(&d.base, &model, u % 200 - 100, back, n);
+        take_unit(&c, &m, u % 200 - 100, n, printed);
+        for (size_t i = 0; i < n; i++)
+            assert_true(back[i] == x[u][i]);
+        assert_memory_equal(back, printed, n * sizeof *back);
+    }
+    close_substream(&c, 1);
+    d.base.ops->close(&d.base);
+    assert_null(c.error);
+    assert_int_equal(d.base.error.code, TED4_OK);
+    ted4_writer_finish(&w);
+}
+
+static void values(void **state)
+{
+    static const int32_t k[] = { 0,       1,         -1,       3,         8388607,
+                                 8388608, -16777215, 16777216, INT32_MAX, -INT32_MAX };
+
+    (void)state;
+    for (size_t i = 0; i < sizeof k / sizeof *k; i++)
+        for (int e = -256; e <= 256; e++) {
+            const float ours = ted4_weight_value(k[i], e);
+            const double exact = ldexp(k[i], e);
+            const int legal = abs(k[i]) < 1 << 24 &&
+                              (k[i] == 0 || (fabs(exact) >= 0x1p-126 && fabs(exact) < 0x1p128));
+
+            assert_int_equal(ted4_float_bits(ours), weight(k[i], e));
+            assert_true(legal ? (double)ours == exact : ours == INFINITY);
+        }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(positions),
-        cmocka_unit_test(grids),
-        cmocka_unit_test(damaged),
-        cmocka_unit_test(weights),
+        cmocka_unit_test(positions), cmocka_unit_test(grids),   cmocka_unit_test(damaged),
+        cmocka_unit_test(integers),  cmocka_unit_test(weights), cmocka_unit_test(values),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);
