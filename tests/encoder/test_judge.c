@@ -23,6 +23,7 @@ static ted4_train_options long_options(void)
     ball_set(&o, "stage1=4800");
     ball_set(&o, "stage2=4800");
     ball_set(&o, "probe=0");
+    ball_set(&o, "judge=1");
     return o;
 }
 
@@ -63,7 +64,7 @@ static void check_sizes(const uint8_t *group, uint32_t n)
 /* Groups of pictures at random where cameras are few. */
 static void test_groups_of_pictures(void **state)
 {
-    const ted4_train_options o = ball_options();
+    const ted4_train_options o = long_options();
     unsigned other = 0;
     ted4_trainer t;
 
@@ -80,7 +81,7 @@ static void test_groups_of_pictures(void **state)
 static void test_groups_of_cameras(void **state)
 {
     enum { CAMERAS = 9 };
-    const ted4_train_options o = ball_options();
+    const ted4_train_options o = long_options();
     const uint32_t cameras = balls.n_cameras;
     uint32_t was[64];
     ted4_trainer t;

@@ -265,7 +265,6 @@ static ted4_train_options options(void)
     ted4_train_options o = ball_options();
 
     ball_set(&o, "stage1=2000");
-    ball_set(&o, "judge=0");
     ball_set(&o, "probe=0");
     ball_set(&o, "dropout=0");
     return o;

@@ -14,7 +14,7 @@ equal() { if [ "$2" = "$3" ]; then ok "$1"; else fail "$1" "$2, expected $3"; fi
 still="--preset draft --iterations 3200,40 --seed 1 -j 1 --capacity fixed --set probe=0
     --set init_anchors=100 --set max_anchors=200 --set offsets=4 --set feature=8 --set phi=4
     --set bank_dim=8 --set deform_width=8 --set head_width=12 --set sprouts=0 --set grow_until=0
-    --set activation=0 --set poses=0 --set motion_worth=0 --set dropout=0"
+    --set activation=0 --set poses=0 --set motion_worth=0 --set dropout=0 --set judge=1"
 for rate in feature scaling offset phi tau mask heads motion prior colour; do
     still="$still --set lr_$rate=0"
 done
