@@ -22,6 +22,7 @@ bench-render: $B/bench/bench_render
 # Parts of a step are told apart by functions that train_parts.c puts in between.
 LEVELED_PARTS = ted4_raster_project ted4_raster_blend ted4_raster_blend_bwd ted4_raster_project_bwd
 TRAIN_PARTS = ted4_dataset_pixels ted4_trainer_check ted4_schedule_event ted4_visible_blocks_of \
+        ted4_visible_blocks_wake \
         ted4_generator_pack ted4_generate \
         ted4_raster_bin ted4_loss $(foreach l,base v3 v4,$(LEVELED_PARTS:%=%_$l)) \
         ted4_generate_backward ted4_update_volume ted4_update_bank ted4_densify_gather \

@@ -71,6 +71,8 @@ BETWEEN(SCHEDULE, int, ted4_trainer_check, (ted4_trainer * t, int anchors), (t, 
 BETWEEN(SCHEDULE, int, ted4_schedule_event, (ted4_trainer * t), (t))
 BETWEEN(VISIBLE, int, ted4_visible_blocks_of, (ted4_trainer * t, const ted4_view *v, size_t n),
         (t, v, n))
+BETWEEN_VOID(VISIBLE, ted4_visible_blocks_wake, (ted4_trainer * t, const ted4_generate_input *in),
+             (t, in))
 BETWEEN_VOID(GENERATE, ted4_generator_pack, (ted4_generator * g, const float *net), (g, net))
 BETWEEN(GENERATE, int, ted4_generate,
         (ted4_generator * g, const ted4_generate_input *in, const ted4_parallel *p,

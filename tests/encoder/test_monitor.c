@@ -312,12 +312,12 @@ static void test_empty_space(void **state)
     ted4_trainer t;
 
     (void)state;
-    begin_at(&t, KEPT + 1);
+    begin_at(&t, KEPT + 21); /* well after the last growth, which costs quality for a while */
     t.monitor.state.screen.level += 6; /* as if 64 times as many had been usual */
-    ball_train(&t, KEPT + 32);
+    ball_train(&t, KEPT + 52);
     assert_int_equal(t.monitor.state.bad_screen, 31);
     assert_true(!ted4_monitor_calm(&t));
-    ball_train(&t, KEPT + 34);
+    ball_train(&t, KEPT + 54);
     assert_int_equal(t.monitor.state.rollbacks, 0);
     assert_true(ted4_monitor_calm(&t));
     assert_true(t.monitor.state.screen.n < 32);

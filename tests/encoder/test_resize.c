@@ -168,6 +168,7 @@ static void test_offset(void **state)
 
     (void)state;
     go_there(&t);
+    ball_set_biases(&t, TED4_NET_OPACITY, K, 1.0f); /* so that all other offsets show something */
     for (size_t i = 0; i < t.anchors.n; i++)
         *ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, i, t.layout.offset_logit + 1) = -10;
     expect_free(&t, TED4_CANDIDATE_OFFSETS, K - 1, 0.0);

@@ -10,6 +10,7 @@
 #include "train/model/formulas.h"
 #include "math/elementary.h"
 #include "train/math/random.h"
+#include "train/state/arrangement.h"
 
 enum { DEPTHS = 3 };
 #define VOXEL_RATIO    0.25 /* edge of a voxel of depth i: times 4^-i */
@@ -47,18 +48,20 @@ typedef struct {
 } gather_job;
 
 /* Adds the statistics of visible block i in one view: to the rows of the anchors' opacity [3][32],
- * and to those of their Gaussians' gradients [2 K][32]. */
+ * and to those of their Gaussians' gradients [2 K][32]. A block that is not drawn has visits only.
+ */
 static void add_block(const gather_job *g, size_t i, float *opacity, float *gradient)
 {
     const ted4_trainer *t = g->t;
     const int K = t->layout.head.n_offsets;
-    const uint32_t lanes = g->in->lanes[i], there = ted4_lanes_there(g->in, i);
+    const int drawn = i < g->in->n_visible;
+    const uint32_t lanes = g->in->lanes[i], there = drawn ? ted4_lanes_there(g->in, i) : 0;
 
     for (int j = 0; j < TED4_LANES; j++) {
         opacity[TED4_LANES + j] += (float)(lanes >> j & 1);
         opacity[2 * TED4_LANES + j] += (float)(there >> j & 1);
     }
-    for (int k = 0; k < K; k++) {
+    for (int k = 0; drawn && k < K; k++) {
         const size_t at = (i * (size_t)K + (size_t)k) * TED4_LANES;
         const float *d = t->work.splat_gradient.mean2d + at, *shown = g->s->opacity + at;
         const uint8_t *seen = t->work.splat_gradient.visible + at;
@@ -342,6 +345,5 @@ int ted4_densify_adjust(ted4_trainer *t, size_t allowance)
 
     if (grow(t, allowance) != 0 || prune(t, n) != 0)
         return -1;
-    return ted4_anchors_sort(&t->anchors) != 0 ? ted4_trainer_fail(t, "no memory to sort anchors")
-                                               : 0;
+    return ted4_arrange_anchors(t);
 }

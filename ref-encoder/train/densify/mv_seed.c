@@ -10,6 +10,7 @@
 #include "train/math/voxel_set.h"
 #include "math/elementary.h"
 #include "train/math/random.h"
+#include "train/state/arrangement.h"
 #include "photo_votes.h"
 #include "plane_sweep.h"
 #include "seed_anchor.h"
@@ -90,8 +91,7 @@ int ted4_mv_seed(ted4_trainer *t)
         bad = ted4_trainer_fail(t, "no memory for new anchors");
     bad = bad || ted4_photo_votes_count(&s, t, point, colour, list.n) != 0 ||
           ted4_seed_parents_measure(t, &l) != 0 || plant(t, &list, &s, &l) != 0;
-    if (!bad && ted4_anchors_sort(&t->anchors) != 0)
-        bad = ted4_trainer_fail(t, "no memory to sort anchors");
+    bad = bad || ted4_arrange_anchors(t) != 0;
     ted4_photo_votes_free(&s);
     free(list.item);
     free(point);

@@ -12,9 +12,8 @@
 #include "train/state/view_subset.h"
 #include "train/state/visible_blocks.h"
 
-/* The logit of a closed mask. Its sigmoid is nearly flat there, and Adam's second moment remembers
- * steeper slopes, so that noise does not open the mask again. */
-#define CLOSED (-10.0f)
+/* The logit of a closed mask: it is shut, and stays so. */
+#define CLOSED (TED4_MASK_SHUT - 2.0f)
 /* A path is sampled at this many times at most. */
 enum { MOST_TIMES = 64 };
 /* Added to the opacity by which a time is weighted, for anchors that are never opaque. */
@@ -170,7 +169,7 @@ static void gather(const ted4_trainer *t, const ted4_splats *g, float weight, su
     const float *part[PARTS];
 
     parts_of(g, part);
-    for (size_t b = 0; b < t->visible_blocks.n; b++)
+    for (size_t b = 0; b < t->visible_blocks.awake; b++)
         for (size_t j = 0; j < TED4_LANES; j++) {
             const size_t i = t->visible_blocks.block[b] * (size_t)TED4_LANES + j;
             float change = 0;

@@ -9,6 +9,7 @@
 #include "cell_view.h"
 #include "seed_anchor.h"
 #include "train/model/normalise.h"
+#include "train/state/arrangement.h"
 
 /* So many pictures before and after a picture tell at which depth something is. */
 enum { BESIDE = 3, RING = 2 * BESIDE + 1 };
@@ -363,8 +364,7 @@ static int plant(ted4_trainer *t, const selection *h)
 
     for (size_t i = 0; !bad && i < h->n; i++)
         bad = ted4_seed_add(t, &l, &h->item[i].place, &h->item[i].span) != 0;
-    if (!bad && ted4_anchors_sort(&t->anchors) != 0)
-        bad = ted4_trainer_fail(t, "no memory to sort anchors");
+    bad = bad || ted4_arrange_anchors(t) != 0;
     ted4_seed_parents_free(&l);
     return bad ? -1 : 0;
 }

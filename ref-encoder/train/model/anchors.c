@@ -125,19 +125,25 @@ static int compare_keyed(const void *x, const void *y)
     return a->index < b->index ? -1 : a->index > b->index;
 }
 
-int ted4_anchors_sort(ted4_anchors *a)
+uint64_t ted4_anchor_morton(const ted4_anchors *a, size_t i)
+{
+    uint16_t p[3];
+
+    for (int j = 0; j < 3; j++)
+        p[j] = ted4_float_to_half(*ted4_anchor_value(a, TED4_ROW_POSITION, i, j));
+    return ted4_morton(p);
+}
+
+int ted4_anchors_sort(ted4_anchors *a, const uint16_t *group)
 {
     keyed *key = malloc((a->n + 1) * sizeof *key);
     uint32_t *order = malloc((a->n + 1) * sizeof *order);
     int bad = key == NULL || order == NULL;
 
-    for (size_t i = 0; !bad && i < a->n; i++) {
-        uint16_t p[3];
-
-        for (int j = 0; j < 3; j++)
-            p[j] = ted4_float_to_half(*ted4_anchor_value(a, TED4_ROW_POSITION, i, j));
-        key[i] = (keyed) { ted4_morton(p), (uint32_t)i };
-    }
+    for (size_t i = 0; !bad && i < a->n; i++)
+        key[i] =
+            (keyed) { (uint64_t)(group == NULL ? 0 : group[i]) << 48 | ted4_anchor_morton(a, i),
+                      (uint32_t)i };
     if (!bad) {
         qsort(key, a->n, sizeof *key, compare_keyed);
         for (size_t i = 0; i < a->n; i++)

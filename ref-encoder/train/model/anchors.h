@@ -38,9 +38,12 @@ int ted4_anchors_resize(ted4_anchors *a, size_t n);
 /* Keeps the anchors order[0 .. n), in that order; indices must not repeat. Returns 0, or -1 if
  * memory ran out. */
 int ted4_anchors_select(ted4_anchors *a, const uint32_t *order, size_t n);
-/* Sorts by the Morton code of spec 8 (of positions rounded to binary16); ties by index. Returns 0,
- * or -1 if memory ran out. */
-int ted4_anchors_sort(ted4_anchors *a);
+/* Sorts by the numbers of groups, group[n] (NULL: all anchors are one group), within a group by the
+ * Morton code of spec 8 (of positions rounded to binary16); ties by index. Returns 0, or -1 if
+ * memory ran out. */
+int ted4_anchors_sort(ted4_anchors *a, const uint16_t *group);
+/* The Morton code of anchor i: 48 bits. */
+uint64_t ted4_anchor_morton(const ted4_anchors *a, size_t i);
 
 static inline float *ted4_block(const ted4_anchors *a, ted4_row k, size_t block)
 {

@@ -157,7 +157,7 @@ int ted4_init_anchors(ted4_anchors *a, const ted4_layout *l, const ted4_dataset 
         fill_anchor(&f, i);
     free(p);
     free(out);
-    return bad || ted4_anchors_sort(a) != 0 ? -1 : 0;
+    return bad || ted4_anchors_sort(a, NULL) != 0 ? -1 : 0;
 }
 
 static void init_layer(float *w, unsigned in, unsigned out, float gain, uint64_t key,

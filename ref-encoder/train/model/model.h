@@ -34,6 +34,15 @@ static inline int ted4_mask_on(float logit)
     return logit > TED4_MASK_LOGIT;
 }
 
+/* A mask of motion below this logit stays closed: the straight-through gradient, tiny there, is
+ * taken as 0, so that F_deform need not be evaluated for its anchor. */
+#define TED4_MASK_SHUT (-8.0f)
+
+static inline int ted4_mask_shut(float logit)
+{
+    return logit < TED4_MASK_SHUT;
+}
+
 /* Returns the number of floats in n rows of lanes. */
 static inline size_t ted4_row_floats(size_t n)
 {

@@ -168,7 +168,7 @@ static void search_centres(const ted4_trainer *t, largest *best)
     const size_t K = t->layout.head.n_offsets;
 
     for (size_t i = 0; i < s->n; i++)
-        for (size_t k = 0; k < K * TED4_LANES; k++)
+        for (size_t k = 0; s->drawn[i] < s->awake && k < K * TED4_LANES; k++)
             for (int c = 0; c < 3; c++)
                 compare(best, t->work.splat_gradient.mean[c][s->drawn[i] * K * TED4_LANES + k],
                         (int64_t)(s->block[i] * (size_t)TED4_LANES + k % TED4_LANES));

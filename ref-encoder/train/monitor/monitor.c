@@ -139,6 +139,8 @@ static int hidden_reason(const ted4_visible_blocks *visible_blocks, const ted4_g
     const size_t K = in->layout->head.n_offsets;
     float opacity = 0, extent = 0;
 
+    if (visible_blocks->drawn[visible] >= visible_blocks->awake)
+        return BY_ACTIVATION;
     for (size_t k = 0; k < K; k++) {
         const size_t at = (visible_blocks->drawn[visible] * K + k) * TED4_LANES + lane;
 
@@ -160,7 +162,7 @@ static int collapsed(ted4_trainer *t, const ted4_generate_input *in, const ted4_
     int64_t first[REASONS] = { -1, -1, -1 };
     int most = BY_OPACITY;
 
-    for (size_t i = 0; i < in->n_visible; i++)
+    for (size_t i = 0; i < t->visible_blocks.n; i++)
         for (size_t j = 0; j < TED4_LANES; j++) {
             const int why = in->lanes[i] >> j & 1 ? hidden_reason(&t->visible_blocks, in, s, i, j)
                                                   : -1;

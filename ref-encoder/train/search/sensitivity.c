@@ -34,7 +34,7 @@ static void gather(const ted4_trainer *t, const ted4_splats *s, float weight, fl
 {
     const size_t K = t->layout.head.n_offsets;
 
-    for (size_t i = 0; i < t->visible_blocks.n; i++)
+    for (size_t i = 0; i < t->visible_blocks.awake; i++)
         for (size_t k = 0; k < K; k++)
             for (size_t j = 0; j < TED4_LANES; j++) {
                 const size_t at = (i * K + k) * TED4_LANES + j;

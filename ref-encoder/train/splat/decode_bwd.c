@@ -1,6 +1,6 @@
 /* decode_bwd.c - adjoint of decode_fwd.c: from gradients of Gaussians to those of anchors, networks
  * and bank. Masks are straight-through: their gradient is that of sigmoid(logit), as the hard 0 or
- * 1 has none. Positions have no gradient.
+ * 1 has none; that of a mask of motion that is shut (model.h) is 0. Positions have no gradient.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "decode_lanes.h"
 
@@ -194,7 +194,7 @@ static void deform_backward(block_state *s)
     if (g->layout.head.temporal_mask) {
 #pragma omp simd
         for (int j = 0; j < TED4_LANES; j++)
-            d_logit[j] = d_m[j] * mask_slope(logit[j]);
+            d_logit[j] = ted4_lane_keep(-!ted4_mask_shut(logit[j]), d_m[j] * mask_slope(logit[j]));
     }
     ted4_gen_chain_backward(g, &g->chain[TED4_NET_DEFORM], s->planes, s->d, d_phi, 0);
 }
@@ -280,11 +280,39 @@ static void backward_block(const ted4_gen_job *t, size_t visible, float *d, floa
     heads_backward(&s, t, visible);
     if (!t->in->by_view)
         ted4_gen_camera_backward(t, visible, s.on, s.d_feature, s.d_moved, d_camera);
-    if (t->g->chain[TED4_NET_DEFORM].n > 0)
+    if (ted4_gen_moves(t->g, s.planes, s.on))
         deform_backward(&s);
     feature_backward(&s);
     sizes_backward(&s);
     activation_backward(&s, t->in);
+}
+
+static int block_moves(const ted4_gen_job *t, size_t visible)
+{
+    int32_t on[TED4_LANES];
+
+    ted4_lane_set(t->in->lanes[visible], on);
+    return ted4_gen_moves(t->g, ted4_gen_saved(t->g, visible), on);
+}
+
+/* Adds the weight gradients of a network over the visible blocks from to to - 1; d: gradients of
+ * their layer outputs. F_deform has them where something moves only. */
+static void weights_backward(const ted4_gen_job *t, int net, size_t from, size_t to, float *d,
+                             float *grad)
+{
+    const ted4_generator *g = t->g;
+    size_t end;
+
+    for (size_t i = from; i < to; i = end) {
+        const int some = net != TED4_NET_DEFORM || block_moves(t, i);
+
+        for (end = i + 1; end < to; end++)
+            if (net == TED4_NET_DEFORM && block_moves(t, end) != some)
+                break;
+        if (some)
+            ted4_gen_chain_weights(g, &g->chain[net], ted4_gen_saved(g, i),
+                                   d + (i - from) * g->d_size, end - i, grad);
+    }
 }
 
 void TED4_LEVELED(ted4_gen_backward)(void *arg, size_t chunk)
@@ -307,8 +335,7 @@ void TED4_LEVELED(ted4_gen_backward)(void *arg, size_t chunk)
                            d + TED4_GEN_GROUP * g->d_size, d_camera);
         for (int net = 0; net < TED4_NETS_R; net++)
             if (net != TED4_NET_COLOUR || !t->in->by_view)
-                ted4_gen_chain_weights(g, &g->chain[net], ted4_gen_saved(g, from), d, to - from,
-                                       grad);
+                weights_backward(t, net, from, to, d, grad);
     }
     ted4_gen_camera_sum(d_camera, g->d_camera[chunk]);
 }

@@ -41,8 +41,9 @@ static void sizes(const ted4_generator *g, float *planes)
     }
 }
 
-/* spec 11.3: computes f' = f + m df and the moved position p + m dx, which replaces position. */
-static void deform(ted4_generator *g, float *planes, float *position)
+/* spec 11.3: computes f' = f + m df and the moved position p + m dx, which replaces position.
+ * moves: ted4_gen_moves. */
+static void deform(ted4_generator *g, float *planes, float *position, int moves)
 {
     const int f = g->layout.head.feature_dim;
     const float *logit = ted4_gen_channel(g, planes, g->layout.temporal_logit);
@@ -51,6 +52,13 @@ static void deform(ted4_generator *g, float *planes, float *position)
     float *m = ted4_gen_plane(planes, g->plane.moving);
     const float *y;
 
+    if (g->layout.head.view == TED4_VIEW_FULL)
+        memcpy(moved + f * TED4_LANES, ted4_gen_plane(planes, g->plane.view),
+               3 * TED4_LANES * sizeof *moved);
+    if (!moves) {
+        memcpy(moved, feature, (size_t)f * TED4_LANES * sizeof *moved);
+        return;
+    }
     ted4_gen_chain_forward(&g->chain[TED4_NET_DEFORM], planes);
     y = ted4_gen_plane(planes, g->plane.motion);
 #pragma omp simd
@@ -66,8 +74,6 @@ static void deform(ted4_generator *g, float *planes, float *position)
         for (int j = 0; j < TED4_LANES; j++)
             moved[j] = feature[j] + m[j] * y[j];
     }
-    if (g->layout.head.view == TED4_VIEW_FULL)
-        memcpy(moved, ted4_gen_plane(planes, g->plane.view), 3 * TED4_LANES * sizeof *moved);
 }
 
 /* spec 11.4: computes the activation. */
@@ -173,7 +179,7 @@ void TED4_LEVELED(ted4_gen_forward)(void *job, size_t visible)
     load_block(g, t->in, visible, position, on);
     sizes(g, planes);
     if (g->chain[TED4_NET_DEFORM].n > 0)
-        deform(g, planes, position);
+        deform(g, planes, position, ted4_gen_moves(g, planes, on));
     ted4_gen_chain_forward(&g->chain[TED4_NET_OPACITY], planes);
     ted4_gen_chain_forward(&g->chain[TED4_NET_COVARIANCE], planes);
     activation(g, t->in, planes);

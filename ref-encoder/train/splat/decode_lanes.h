@@ -38,6 +38,21 @@ static inline void ted4_gen_copy_lanes(int n, const int32_t *on, const float *fr
     }
 }
 
+/* Returns whether F_deform matters for a visible block: not if the masks of motion of all anchors
+ * in use are shut. */
+static inline int ted4_gen_moves(const ted4_generator *g, float *planes, const int32_t *on)
+{
+    const float *logit = ted4_gen_channel(g, planes, g->layout.temporal_logit);
+    int32_t moves = 0;
+
+    if (g->chain[TED4_NET_DEFORM].n == 0)
+        return 0;
+#pragma omp simd reduction(| : moves)
+    for (int j = 0; j < TED4_LANES; j++)
+        moves |= on[j] & -!ted4_mask_shut(logit[j]);
+    return !g->layout.head.temporal_mask || moves != 0;
+}
+
 /* spec 11.5: computes the direction from the camera to each anchor, from [3][32] to [3][32]. */
 void ted4_gen_view_directions(const float *camera, const float *position, float *to);
 /* spec 11.5: evaluates the colour head of a visible block, from the saved planes of its input to

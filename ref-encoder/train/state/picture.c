@@ -16,7 +16,6 @@ int ted4_trainer_generate(ted4_trainer *t, const ted4_picture *pic, ted4_pass pa
         ted4_dropout(t);
     in->layout = &t->layout;
     in->net = t->net.value;
-    in->n_visible = t->visible_blocks.n;
     in->attr = t->visible_blocks.used;
     in->position = t->visible_blocks.position;
     in->lanes = t->visible_blocks.lanes;
@@ -25,6 +24,8 @@ int ted4_trainer_generate(ted4_trainer *t, const ted4_picture *pic, ted4_pass pa
     in->activation = t->layout.head.activation && !t->phase.clock_stopped;
     ted4_visible_blocks_quantise(
         t, pass != TED4_PASS_IMAGE && !t->phase.integer ? TED4_QUANT_NOISE : TED4_QUANT_ROUND);
+    ted4_visible_blocks_wake(t, in);
+    in->n_visible = t->visible_blocks.awake;
     ted4_generator_pack(t->work.generator, t->net.value);
     return ted4_generate(t->work.generator, in, t->parallel, s) != 0
                ? ted4_trainer_fail(t, "no memory to render")

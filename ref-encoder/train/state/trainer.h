@@ -40,12 +40,14 @@ typedef struct {
     double splat_pixels;     /* Gaussians on screen times pixels of the picture */
 } ted4_progress;
 
-/* Buffers of one step, indexed by visible block. */
+/* Buffers of one step, indexed by visible block. The first awake blocks are rendered. No anchor of
+ * the others is there at the time of the picture (ted4_visible_blocks_wake). */
 typedef struct {
-    size_t n, capacity;
+    size_t n, awake, capacity;
     uint32_t *block; /* [n] */
     uint32_t *lanes; /* [n] */
     uint32_t *seen;  /* [n] of several views of one time, the lanes of the latest */
+    uint8_t *sleeps; /* [n] of the order before ted4_visible_blocks_wake: no anchor is there */
     /* [n] Index of its Gaussians among those rendered: the block's own index, until
      * ted4_update_rate reorders the visible blocks. */
     uint32_t *drawn;

@@ -24,7 +24,7 @@ static void shared_arrays(const ted4_splat_grads *g, float *array[SHARED])
  * colours. */
 static size_t gradients_of(const ted4_trainer *t, const ted4_view_batch *b)
 {
-    return SHARED * b->s.n + ted4_generate_view_size(t->work.generator, t->visible_blocks.n);
+    return SHARED * b->s.n + ted4_generate_view_size(t->work.generator, t->visible_blocks.awake);
 }
 
 int ted4_batch_begin(ted4_trainer *t, ted4_view_batch *b, const uint32_t *item, size_t n,
@@ -107,6 +107,15 @@ void ted4_batch_add(ted4_trainer *t, ted4_view_batch *b)
     ted4_view_sums_add(&t->work.view_sums, t->parallel);
 }
 
+/* The picture has no gradient for blocks that it does not draw. */
+static void clear_sleeping(void *arg, size_t i)
+{
+    const ted4_trainer *t = arg;
+
+    memset(t->visible_blocks.gradient[t->visible_blocks.awake + i], 0,
+           (size_t)t->layout.n_channels * TED4_LANES * sizeof(float));
+}
+
 int ted4_batch_backward(ted4_trainer *t, ted4_view_batch *b)
 {
     if (b->n > 1) {
@@ -122,6 +131,8 @@ int ted4_batch_backward(ted4_trainer *t, ted4_view_batch *b)
         b->other = mean + gradients_of(t, b);
         b->s.opacity = b->opacity;
     }
+    ted4_parallel_for(t->parallel, t->visible_blocks.n - t->visible_blocks.awake, clear_sleeping,
+                      t);
     return ted4_generate_backward(t->work.generator, &b->all, &t->work.splat_gradient, t->parallel,
                                   t->visible_blocks.gradient, t->net.gradient) != 0
                ? ted4_trainer_fail(t, "no memory for gradients")

@@ -7,13 +7,23 @@
 #include <string.h>
 
 #include "train/math/random.h"
-#include "recon/strict.h"
+#include "train/model/formulas.h"
 
 /* An anchor is treated as a ball whose radius is three times its offset scale, and is visible if
  * the ball intersects the guarded frustum. If things move, the canonical position is less certain,
  * so a tenth of the scene's half-size is added to the radius. */
 #define SCALES_OF_BALL 3.0f
 #define MOTION_MARGIN  0.1f
+
+/* Gathers flags, each 0 or 1, in the bits of a mask. */
+static uint32_t lane_bits(const int32_t *flag)
+{
+    uint32_t bits = 0;
+
+    for (int j = 0; j < TED4_LANES; j++)
+        bits |= (uint32_t)flag[j] << j;
+    return bits;
+}
 
 uint32_t ted4_block_visible(const ted4_trainer *t, size_t block, const ted4_view *v)
 {
@@ -28,7 +38,7 @@ uint32_t ted4_block_visible(const ted4_trainer *t, size_t block, const ted4_view
     const float up = TED4_RASTER_GUARD * v->cy / v->fy;
     const float down = TED4_RASTER_GUARD * ((float)v->height - v->cy) / v->fy;
     float widest[TED4_LANES];
-    uint32_t seen = 0;
+    int32_t in_view[TED4_LANES];
 
 #pragma omp simd
     for (int j = 0; j < TED4_LANES; j++) {
@@ -37,19 +47,20 @@ uint32_t ted4_block_visible(const ted4_trainer *t, size_t block, const ted4_view
 
         widest[j] = is_log2 ? ted4_pow2(most) : most;
     }
+#pragma omp simd
     for (int j = 0; j < TED4_LANES; j++) {
         const float x = p[j], y = p[TED4_LANES + j], z = p[2 * TED4_LANES + j];
         const float cx = v->R[0] * x + v->R[1] * y + v->R[2] * z + v->t[0];
         const float cy = v->R[3] * x + v->R[4] * y + v->R[5] * z + v->t[1];
         const float cz = v->R[6] * x + v->R[7] * y + v->R[8] * z + v->t[2];
         const float ball = SCALES_OF_BALL * widest[j] + margin;
-        const float depth = fmaxf(cz, v->near_z);
+        const float depth = cz > v->near_z ? cz : v->near_z;
 
-        if (cz + ball > v->near_z && cx < right * depth + ball && -cx < left * depth + ball &&
-            cy < down * depth + ball && -cy < up * depth + ball)
-            seen |= (uint32_t)1 << j;
+        in_view[j] = (cz + ball > v->near_z) & (cx < right * depth + ball) &
+                     (-cx < left * depth + ball) & (cy < down * depth + ball) &
+                     (-cy < up * depth + ball);
     }
-    return seen & ted4_block_lanes(&t->anchors, block);
+    return lane_bits(in_view) & ted4_block_lanes(&t->anchors, block);
 }
 
 static int reserve(ted4_trainer *t, size_t n)
@@ -64,6 +75,7 @@ static int reserve(ted4_trainer *t, size_t n)
     s->block = malloc(n * sizeof *s->block);
     s->lanes = malloc(n * sizeof *s->lanes);
     s->seen = malloc(n * sizeof *s->seen);
+    s->sleeps = malloc(n * sizeof *s->sleeps);
     s->drawn = malloc(n * sizeof *s->drawn);
     s->position = malloc(n * sizeof *s->position);
     s->raw = malloc(n * sizeof *s->raw);
@@ -73,9 +85,10 @@ static int reserve(ted4_trainer *t, size_t n)
     s->quantised = aligned_alloc(64, n * floats * sizeof(float));
     s->gradients = aligned_alloc(64, n * floats * sizeof(float));
     s->squares = malloc(n * (TED4_BLOCK_TERMS + 1) * sizeof *s->squares);
-    if (s->block == NULL || s->lanes == NULL || s->seen == NULL || s->drawn == NULL ||
-        s->position == NULL || s->raw == NULL || s->used == NULL || s->gradient == NULL ||
-        s->steps == NULL || s->quantised == NULL || s->gradients == NULL || s->squares == NULL)
+    if (s->block == NULL || s->lanes == NULL || s->seen == NULL || s->sleeps == NULL ||
+        s->drawn == NULL || s->position == NULL || s->raw == NULL || s->used == NULL ||
+        s->gradient == NULL || s->steps == NULL || s->quantised == NULL || s->gradients == NULL ||
+        s->squares == NULL)
         return ted4_trainer_fail(t, "no memory for %zu blocks", n);
     s->capacity = n;
     return 0;
@@ -102,6 +115,7 @@ void ted4_visible_blocks_finish(ted4_visible_blocks *s)
     free(s->block);
     free(s->lanes);
     free(s->seen);
+    free(s->sleeps);
     free(s->drawn);
     free(s->position);
     free(s->raw);
@@ -173,6 +187,7 @@ int ted4_visible_blocks_of(ted4_trainer *t, const ted4_view *v, size_t n)
         s->steps[i] = ted4_block(&t->anchors, TED4_ROW_STEP, b);
         s->n++;
     }
+    s->awake = s->n;
     return 0;
 }
 
@@ -198,4 +213,67 @@ void ted4_visible_blocks_quantise(ted4_trainer *t, ted4_quant quant)
 
     if (t->phase.stage2)
         ted4_parallel_for(t->parallel, t->visible_blocks.n, quantise_block, &j);
+}
+
+/* An anchor with less activation is not drawn, because no opacity exceeds 1. The rasteriser's limit
+ * is a little lowered, as its arithmetic is another one. */
+#define LEAST_ACTIVATION (0.99f * TED4_RASTER_ALPHA_MIN)
+
+typedef struct {
+    const ted4_visible_blocks *s;
+    float now;
+    size_t tau; /* floats before the activation in a block */
+} wake_job;
+
+/* The comparison is false for numbers that are not finite, so that they are seen. */
+static void look_at_life(void *arg, size_t i)
+{
+    const wake_job *w = arg;
+    const float *tau = w->s->used[i] + w->tau;
+    int32_t there[TED4_LANES];
+
+#pragma omp simd
+    for (int j = 0; j < TED4_LANES; j++) {
+        const float u = ted4_find_edge(w->now, tau + j, ted4_pow2).u;
+
+        there[j] = !(ted4_activation(u, ted4_pow2) < LEAST_ACTIVATION);
+    }
+    w->s->sleeps[i] = !(lane_bits(there) & w->s->lanes[i]);
+}
+
+/* Exchanges visible blocks i and k, without what belongs to places in the list. */
+static void exchange(ted4_visible_blocks *s, size_t i, size_t k)
+{
+    const uint32_t block = s->block[i], lanes = s->lanes[i];
+    const float *position = s->position[i], *raw = s->raw[i], *used = s->used[i];
+    float *steps = s->steps[i];
+
+    s->block[i] = s->block[k];
+    s->lanes[i] = s->lanes[k];
+    s->position[i] = s->position[k];
+    s->raw[i] = s->raw[k];
+    s->used[i] = s->used[k];
+    s->steps[i] = s->steps[k];
+    s->block[k] = block;
+    s->lanes[k] = lanes;
+    s->position[k] = position;
+    s->raw[k] = raw;
+    s->used[k] = used;
+    s->steps[k] = steps;
+}
+
+void ted4_visible_blocks_wake(ted4_trainer *t, const ted4_generate_input *in)
+{
+    ted4_visible_blocks *s = &t->visible_blocks;
+    wake_job w = { s, (float)in->num / (float)in->den, 0 };
+
+    s->awake = s->n;
+    if (!in->activation)
+        return;
+    w.tau = (size_t)t->layout.first[TED4_TAU] * TED4_LANES;
+    ted4_parallel_for(t->parallel, s->n, look_at_life, &w);
+    s->awake = 0;
+    for (size_t i = 0; i < s->n; i++)
+        if (!s->sleeps[i])
+            exchange(s, s->awake++, i);
 }

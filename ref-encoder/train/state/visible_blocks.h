@@ -20,6 +20,11 @@ void ted4_visible_blocks_quantise(ted4_trainer *t, ted4_quant quant);
 /* Returns the input of rate/rate.h for all of t->visible_blocks in the integer stage, without
  * gradients. It is valid until t->visible_blocks is filled again. */
 ted4_rate_input ted4_visible_blocks_rate(const ted4_trainer *t);
+/* Reorders t->visible_blocks so that the blocks come first, in order of their numbers, that hold an
+ * anchor whose activation at the time of *in, with the values used, lets it be drawn; their number
+ * is t->visible_blocks.awake, and all of them without activation. Call after
+ * ted4_visible_blocks_quantise, before gradients are written. */
+void ted4_visible_blocks_wake(ted4_trainer *t, const ted4_generate_input *in);
 /* Frees the buffers. */
 void ted4_visible_blocks_finish(ted4_visible_blocks *s);
 

@@ -9,6 +9,7 @@
 #include "train/densify/mv_seed.h"
 #include "train/densify/still_anchors.h"
 #include "train/densify/sv_seed.h"
+#include "train/state/arrangement.h"
 
 /* Share of stage 1 before the first adjustment of anchors. Statistics are gathered from step 0. */
 #define GROW_FROM 0.05
@@ -22,6 +23,9 @@
 /* Share of stage 1 before still anchors are closed: most growth is over, and what is left of the
  * stage repairs what closing changed. */
 #define CLOSE_AT 0.65
+
+/* Lives and masks change slowly, so that the order of anchors is renewed now and then only. */
+enum { ARRANGE_EVERY = 500 };
 
 static double seed_at(const ted4_trainer *t)
 {
@@ -127,11 +131,11 @@ int ted4_schedule_event(ted4_trainer *t)
         ted4_densify_adjust(t, ted4_growth_allowance(t)) != 0)
         return -1;
     if (!t->phase.stage2 && i == (uint64_t)(CLOSE_AT * (double)stage1) &&
-        ted4_close_still_anchors(t) != 0)
+        (ted4_close_still_anchors(t) != 0 || ted4_arrange_anchors(t) != 0))
         return -1;
     if (ted4_at_stage1_end(t) && o->stage2 > 0 && ted4_stage2_begin(t) != 0)
         return -1;
     if (ted4_integer_due(t) && ted4_integer_begin(t) != 0)
         return -1;
-    return 0;
+    return i % ARRANGE_EVERY == 0 ? ted4_arrange_anchors(t) : 0;
 }

@@ -75,14 +75,37 @@ static void copy_values(ted4_blob *to, const float *from)
         to->values[i] = fabsf(from[i]) < 0x1p-126f ? 0.0f : from[i];
 }
 
-static size_t keep_anchors(const ted4_trainer *t, uint32_t *keep)
-{
-    size_t n = 0;
+/* An anchor and its place in the file. */
+typedef struct {
+    uint64_t morton;
+    uint32_t anchor;
+} placed;
 
+static int compare_placed(const void *x, const void *y)
+{
+    const placed *a = x, *b = y;
+
+    return a->morton != b->morton ? (a->morton < b->morton ? -1 : 1)
+                                  : (a->anchor > b->anchor) - (a->anchor < b->anchor);
+}
+
+/* Lists the anchors of the file, keep[*n], in its order (spec 8). Returns 0, or -1 if memory ran
+ * out. */
+static int keep_anchors(const ted4_trainer *t, uint32_t *keep, size_t *n)
+{
+    placed *p = malloc((t->anchors.n + 1) * sizeof *p);
+
+    *n = 0;
+    if (p == NULL)
+        return -1;
     for (size_t i = 0; i < t->anchors.n; i++)
         if (ted4_offset_bits(t, i) != 0)
-            keep[n++] = (uint32_t)i;
-    return n;
+            p[(*n)++] = (placed) { ted4_anchor_morton(&t->anchors, i), (uint32_t)i };
+    qsort(p, *n, sizeof *p, compare_placed);
+    for (size_t i = 0; i < *n; i++)
+        keep[i] = p[i].anchor;
+    free(p);
+    return 0;
 }
 
 /* Enters the integer stage if necessary, and stage 2 before it, even if that has no steps. */
@@ -113,16 +136,19 @@ int ted4_export_scene(ted4_trainer *t, ted4_scene **scene)
     ted4_header h;
     ted4_error e = { TED4_OK, 0 };
     uint32_t *keep;
+    size_t n;
 
     *scene = NULL;
     if (ted4_trainer_check(t, 1) != 0 || settle(t) != 0)
         return -1;
     keep = malloc((t->anchors.n + 1) * sizeof *keep);
-    if (keep == NULL)
+    if (keep == NULL || keep_anchors(t, keep, &n) != 0) {
+        free(keep);
         return ted4_trainer_fail(t, "no memory to export");
+    }
     h = t->layout.head;
-    h.n_anchors = (uint32_t)keep_anchors(t, keep);
-    if (h.n_anchors == 0 || (*scene = ted4_scene_new(&h, NULL)) == NULL) {
+    h.n_anchors = (uint32_t)n;
+    if (n == 0 || (*scene = ted4_scene_new(&h, NULL)) == NULL) {
         free(keep);
         return ted4_trainer_fail(t, h.n_anchors == 0 ? "nothing is left to encode"
                                                      : "no memory to export");

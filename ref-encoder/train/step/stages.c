@@ -14,6 +14,7 @@
 #include "train/model/init.h"
 #include "train/densify/short_lived.h"
 #include "train/state/anchor_appearance.h"
+#include "train/state/arrangement.h"
 #include "train/state/visible_blocks.h"
 #include "write/snap.h"
 
@@ -90,7 +91,7 @@ int ted4_activation_begin(ted4_trainer *t)
         *ted4_anchor_value(a, TED4_ROW_VALUE, i, first + 2) = to;
     }
     free(span);
-    return 0;
+    return ted4_arrange_anchors(t);
 }
 
 /* Returns the highest activation of anchor i over the frames of the sequence, in stage 2 with the
@@ -156,14 +157,10 @@ static int settle_positions(ted4_trainer *t)
             *p = ted4_half_to_float(ted4_float_to_half(*p)) + 0.0f;
         }
 
-    int bad = order == NULL || ted4_anchors_sort(a) != 0;
+    int bad = order == NULL || ted4_anchors_sort(a, NULL) != 0;
 
     for (size_t i = 0; !bad && i < a->n; i++) {
-        uint16_t p[3];
-
-        for (int j = 0; j < 3; j++)
-            p[j] = ted4_float_to_half(*ted4_anchor_value(a, TED4_ROW_POSITION, i, j));
-        const uint64_t code = ted4_morton(p);
+        const uint64_t code = ted4_anchor_morton(a, i);
 
         if (i == 0 || code != last)
             order[n++] = (uint32_t)i;
@@ -318,6 +315,8 @@ int ted4_stage2_begin(ted4_trainer *t)
         return -1;
     ted4_init_prior(t->net.value, &t->layout, &t->anchors, t->opt.seed);
     clear_moments(t);
+    if (ted4_arrange_anchors(t) != 0)
+        return -1;
     for (size_t i = 0; i < t->anchors.n; i++)
         for (int y = 0; y < TED4_TYPES; y++)
             *ted4_anchor_value(&t->anchors, TED4_ROW_STEP, i, y) = t->layout.head.step[y];
