@@ -16,7 +16,7 @@
 typedef struct {
     size_t item;    /* of the shown pictures */
     float *inverse; /* owned: [cells], as ted4_depth_map gives it */
-    uint8_t *good;  /* owned: [cells] whether other maps confirm the cell */
+    float *good;    /* owned: [cells] mean with those of the maps that confirm it; 0: none does */
     int failed;
 } map;
 
@@ -87,14 +87,15 @@ static void make_map(void *arg, size_t i)
     for (int h = 0; h < n; h++)
         helper[h] = &m->reduced[m->w->helper[own->item][h]];
     own->inverse = malloc(cells_of(r) * sizeof *own->inverse);
-    own->good = calloc(cells_of(r), 1);
+    own->good = calloc(cells_of(r), sizeof *own->good);
     own->failed = own->inverse == NULL || own->good == NULL ||
                   ted4_depth_map(m->w, r, helper, n, own->inverse) != 0;
 }
 
 /* Returns what another map says of a point: 1 if it confirms it, -1 if it sees through it, 0 if it
- * says nothing, as where something hides the point. */
-static int judge(const maps *m, const map *other, const double p[3])
+ * says nothing, as where something hides the point. *ratio: the map's inverse depth there as a
+ * multiple of that of the point, if it is confirmed. */
+static int judge(const maps *m, const map *other, const double p[3], double *ratio)
 {
     const ted4_reduced *r = &m->reduced[other->item];
     const ted4_camera *c = &r->camera;
@@ -115,6 +116,7 @@ static int judge(const maps *m, const map *other, const double p[3])
 
     if (!(found > 0) || found > 1 / q[2] + step)
         return 0;
+    *ratio = found * q[2];
     return found >= 1 / q[2] - step ? 1 : -1;
 }
 
@@ -137,18 +139,21 @@ static void check_map(void *arg, size_t i)
 
     for (size_t cell = 0; cell < cells_of(r); cell++) {
         int yes = 0, no = 0;
-        double p[3];
+        double p[3], sum = 1;
 
         if (!(own->inverse[cell] > 0))
             continue;
         ted4_sweep_point(&r->camera, cell, 1 / (double)own->inverse[cell], p);
         for (size_t k = 0; k < m->n; k++) {
-            const int says = may_judge(m, k, i) ? judge(m, &m->map[k], p) : 0;
+            double ratio = 0;
+            const int says = may_judge(m, k, i) ? judge(m, &m->map[k], p, &ratio) : 0;
 
             yes += says > 0;
             no += says < 0;
+            sum += says > 0 ? ratio : 0;
         }
-        own->good[cell] = yes > 0 && yes >= SHARE * (yes + no);
+        if (yes > 0 && yes >= SHARE * (yes + no))
+            own->good[cell] = (float)((double)own->inverse[cell] * sum / (yes + 1));
     }
 }
 
@@ -215,10 +220,10 @@ static candidate *list(const maps *m, const ted4_depth_wanted *o, size_t *n)
             uint64_t state = (uint64_t)o->seed << 40 ^ (uint64_t)i << 24 ^ (uint64_t)k;
             double world[3];
 
-            if (!m->map[i].good[k])
+            if (!(m->map[i].good[k] > 0))
                 continue;
-            ted4_sweep_point(&m->reduced[m->map[i].item].camera, k,
-                             1 / (double)m->map[i].inverse[k], world);
+            ted4_sweep_point(&m->reduced[m->map[i].item].camera, k, 1 / (double)m->map[i].good[k],
+                             world);
             for (int j = 0; j < 3; j++)
                 c[*n].xyz[j] = (float)world[j];
             if (!o->keep(o->user, c[*n].xyz))

@@ -20,10 +20,10 @@ typedef struct {
 
 /* Fills *c with the wanted points, drawn at random from the cells of depth maps whose depth at
  * least half of the other maps that see the place confirm; a map that shows something nearer does
- * not see it. *c is empty if no two maps agree. Working memory is at most TED4_DEPTH_CELLS *
- * (4 * TED4_DEPTH_PLANES + 64) bytes for each thread, and TED4_DEPTH_CELLS * 45 bytes for each of
- * TED4_SHOWN_MOST pictures. The result depends only on the pictures and on *o. Returns 0, or -1 if
- * memory ran out; the caller frees *c in either case. */
+ * not see it. Depths are means over these maps. *c is empty if no two maps agree. Working memory is
+ * at most TED4_DEPTH_CELLS * (4 * TED4_DEPTH_PLANES + 64) bytes for each thread, and
+ * TED4_DEPTH_CELLS * 45 bytes for each of TED4_SHOWN_MOST pictures. The result depends only on the
+ * pictures and on *o. Returns 0, or -1 if memory ran out; the caller frees *c in either case. */
 int ted4_depth_points(ted4_point_cloud *c, const ted4_sweep *w, const ted4_depth_wanted *o,
                       const ted4_parallel *p);
 
