@@ -116,7 +116,8 @@ $B/tests/%: tests/%.sh
 # Tests of the scene maker, or with its scenes.
 SCENE_TESTS = tools/test_scene tools/test_scene_shapes tools/test_scene_sets \
         tools/test_failure_scenes tools/test_scene_colours tools/test_relay \
-        tools/test_motion_points tools/test_ways encoder/test_layouts encoder/test_hold_out
+        tools/test_motion_points tools/test_ways encoder/test_layouts encoder/test_hold_out \
+        encoder/test_exposure
 $(SCENE_TESTS:%=$B/tests/%): $(SCENE_SRC:%.c=$B/%.o)
 $B/tests/tools/test_run_log: $(addprefix $B/ref-encoder/tool/,run_log.o teller.o)
 $B/tests/tools/test_teller: $B/ref-encoder/tool/teller.o

@@ -67,6 +67,15 @@ static int find_start(ted4_training *t)
     return 0;
 }
 
+static void tell_exposures(ted4_training *t)
+{
+    const ted4_colour *c = &t->trainer->colour;
+
+    if (c->exposure.n_knots > 0)
+        ted4_teller_say(t->teller, "exposures of cameras change by %.1f %%, and are corrected",
+                        100 * c->exposure_change);
+}
+
 int ted4_training_begin(ted4_training *t, const ted4_request *r, ted4_trainer *trainer,
                         ted4_teller *teller)
 {
@@ -86,6 +95,8 @@ int ted4_training_begin(ted4_training *t, const ted4_request *r, ted4_trainer *t
     (void)ted4_exchange_first(trainer->exchange, 0);
     if (!leads(t))
         t->checkpoint = NULL;
+    if (leads(t))
+        tell_exposures(t);
     ted4_stop_keep();
     trainer->onlooker.look = ted4_training_look;
     trainer->onlooker.user = t;

@@ -187,11 +187,11 @@ static void test_gradients(void **state)
         open_colour(&c, n);
         random_plane(image, 3 * n, 1);
         random_plane(weight, 3 * n, 2);
-        const float *out = ted4_colour_apply(&c, 1, image, n, NULL);
+        const float *out = ted4_colour_apply(&c, c.value[1], image, n, NULL);
 
         for (size_t i = 0; i < 3 * n; i++)
             d_image[i] = weight[i] * out[i];
-        ted4_colour_backward(&c, 1, image, n, NULL, d_image, gradient);
+        ted4_colour_backward(&c, c.value[1], image, n, NULL, d_image, gradient);
         check_map_gradient(&c, image, weight, n, gradient);
         check_image_gradient(&c, image, weight, n, d_image);
         ted4_colour_finish(&c);
@@ -210,8 +210,8 @@ static void test_identity(void **state)
     open_colour(&c, MOST);
     random_plane(image, 3 * MOST, 1);
     random_plane(d_image, 3 * MOST, 2);
-    assert_memory_equal(ted4_colour_apply(&c, 0, image, MOST, NULL), image, sizeof image);
-    ted4_colour_backward(&c, 0, image, MOST, NULL, d_image, gradient);
+    assert_memory_equal(ted4_colour_apply(&c, c.value[0], image, MOST, NULL), image, sizeof image);
+    ted4_colour_backward(&c, c.value[0], image, MOST, NULL, d_image, gradient);
     random_plane(image, 3 * MOST, 2);
     assert_memory_equal(d_image, image, sizeof image);
     ted4_colour_finish(&c);
@@ -229,9 +229,9 @@ static void test_threads(void **state)
     open_colour(&c, MOST);
     random_plane(image, 3 * MOST, 1);
     for (int i = 0; i < 3; i++) {
-        memcpy(out[i], ted4_colour_apply(&c, 1, image, MOST, which[i]), sizeof out[i]);
+        memcpy(out[i], ted4_colour_apply(&c, c.value[1], image, MOST, which[i]), sizeof out[i]);
         memcpy(d[i], out[0], sizeof d[i]);
-        ted4_colour_backward(&c, 1, image, MOST, which[i], d[i], gradient[i]);
+        ted4_colour_backward(&c, c.value[1], image, MOST, which[i], d[i], gradient[i]);
         assert_memory_equal(out[i], out[0], sizeof out[0]);
         assert_memory_equal(d[i], d[0], sizeof d[0]);
         assert_memory_equal(gradient[i], gradient[0], sizeof gradient[0]);
@@ -263,7 +263,7 @@ static void test_update(void **state)
     assert_int_equal(ted4_colour_init(&c, &d), 0);
     for (int k = 0; k < N; k++)
         gradient[k] = k % 2 ? 3.0f : -0.02f;
-    ted4_colour_update(&c, 0, gradient, 0.01, 0);
+    ted4_colour_update(&c, 0, 0, gradient, 0.01, 0);
     for (int k = 0; k < N; k++) {
         assert_true(fabsf(c.value[0][k] - (k % 2 ? -0.005f : 0.005f)) < 1e-6f);
         assert_true(fabsf(c.value[1][k] + c.value[0][k]) < 1e-8f);
@@ -271,7 +271,7 @@ static void test_update(void **state)
     }
     /* Each camera counts its own steps: this is the first of camera 1, and brings both cameras
      * back. */
-    ted4_colour_update(&c, 1, gradient, 0.01, 0);
+    ted4_colour_update(&c, 1, 0, gradient, 0.01, 0);
     for (int k = 0; k < N; k++) {
         assert_true(fabsf(c.value[0][k]) < 1e-6f);
         assert_true(fabsf(c.value[1][k]) < 1e-6f);
@@ -279,7 +279,7 @@ static void test_update(void **state)
     for (uint64_t step = 0; step < 300; step++) {
         for (uint64_t k = 0; k < N; k++)
             gradient[k] = ted4_uniform(step, k) - 0.45f;
-        ted4_colour_update(&c, (uint32_t)(step * 5 / 3 % 2), gradient, 0.01, 1e-3);
+        ted4_colour_update(&c, (uint32_t)(step * 5 / 3 % 2), 0, gradient, 0.01, 1e-3);
     }
     for (int k = 0; k < N; k++) {
         assert_true(fabsf(c.value[0][k] + c.value[1][k]) < 1e-6f);
@@ -307,7 +307,7 @@ static void test_outlier(void **state)
     for (int k = 0; k < N; k++)
         for (int i = 0; i < CAMS; i++)
             c.value[i][k] = i == 5 ? 0.5f : 0.01f * (float)(i < 5 ? i - 2 : i - 5);
-    ted4_colour_update(&c, 0, gradient, 0.01, 0);
+    ted4_colour_update(&c, 0, 0, gradient, 0.01, 0);
     /* Between the outer quarters lie 0, 0.01, 0.01, 0.02; their mean is 0.01. The mean of all would
      * be 0.066. */
     for (int k = 0; k < N; k++) {
@@ -335,19 +335,19 @@ static void test_undo(void **state)
         scene[i] = 0.5f + 0.2f * scene[i];
     memcpy(c.value[1], map, sizeof map);
 
-    const float *out = ted4_colour_apply(&c, 1, scene, MOST, NULL);
+    const float *out = ted4_colour_apply(&c, c.value[1], scene, MOST, NULL);
 
     for (size_t i = 0; i < MOST; i++)
         for (size_t k = 0; k < 3; k++)
             picture[3 * i + k] = to_byte(out[k * MOST + i]);
-    const uint8_t *seen = ted4_colour_undo(&c, 1, picture, MOST, &backwards);
+    const uint8_t *seen = ted4_colour_undo(&c, c.value[1], picture, MOST, &backwards);
 
     for (size_t i = 0; i < MOST; i++)
         for (size_t k = 0; k < 3; k++)
             assert_true(abs(seen[3 * i + k] - to_byte(scene[k * MOST + i])) <= 2);
     for (int k = 0; k < 9; k++)
         c.value[1][k] = k % 4 == 0 ? -0.9f : 0.0f;
-    assert_ptr_equal(ted4_colour_undo(&c, 1, picture, MOST, NULL), picture);
+    assert_ptr_equal(ted4_colour_undo(&c, c.value[1], picture, MOST, NULL), picture);
     ted4_colour_finish(&c);
 }
 
@@ -366,7 +366,7 @@ static void test_penalty(void **state)
             before[k] = c.value[1][k];
             gradient[k] = (side ? -2.001f : -1.999f) * 0.3f * before[k];
         }
-        ted4_colour_update(&c, 1, gradient, 1e-3, 0.3);
+        ted4_colour_update(&c, 1, 0, gradient, 1e-3, 0.3);
         for (int k = 0; k < N; k++)
             assert_int_equal((fabsf(c.value[1][k]) > fabsf(before[k])), side);
         ted4_colour_finish(&c);
@@ -477,7 +477,7 @@ static double tint_left(ted4_colour *colour, double *there)
     *there = 0;
     for (uint32_t c = 0; c < CAMERAS; c++)
         for (int i = 0; i < 4; i++) {
-            const float *out = ted4_colour_apply(colour, c, seen[i], 1, NULL);
+            const float *out = ted4_colour_apply(colour, colour->value[c], seen[i], 1, NULL);
 
             for (int k = 0; k < 3; k++) {
                 const float want = tinted(tint[c], seen[i], k);

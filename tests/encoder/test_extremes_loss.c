@@ -243,13 +243,13 @@ static void test_maps(void **state)
                 image[i] = colour[k];
                 d[i] = 0.25f;
             }
-            const float *out = ted4_colour_apply(&c, 1, image, PIXELS, NULL);
+            const float *out = ted4_colour_apply(&c, c.value[1], image, PIXELS, NULL);
             const double a = (double)map[m], x = (double)colour[k], want = x * (1 + 3 * a) + a;
 
             for (int i = 0; i < 3 * PIXELS; i++)
                 assert_true(fabs((double)out[i] - want) <=
                             1e-5 * (fabs(x) * (1 + 3 * fabs(a)) + fabs(a)));
-            ted4_colour_backward(&c, 1, image, PIXELS, NULL, d, gradient);
+            ted4_colour_backward(&c, c.value[1], image, PIXELS, NULL, d, gradient);
             for (int i = 0; i < TED4_COLOUR_VALUES; i++) {
                 const double sum = 0.25 * PIXELS * (i < 9 ? x : 1);
 
@@ -283,7 +283,7 @@ static void test_undo(void **state)
                 c.value[1][k] = all || k % 4 == 0 ? diagonal[i] : 0;
             c.value[1][9] = diagonal[i];
             const int bad = ted4_colour_invert(c.value[1], inverse);
-            const uint8_t *seen = ted4_colour_undo(&c, 1, picture, PIXELS, NULL);
+            const uint8_t *seen = ted4_colour_undo(&c, c.value[1], picture, PIXELS, NULL);
 
             if (bad)
                 assert_ptr_equal(seen, picture);
@@ -308,7 +308,7 @@ static void test_steps(void **state)
         for (int k = 0; k < TED4_COLOUR_VALUES; k++)
             gradient[k] = k % 2 ? gradient_of[i] : -gradient_of[i];
         for (int step = 0; step < 20; step++)
-            ted4_colour_update(&c, 1, gradient, 0.01, 0);
+            ted4_colour_update(&c, 1, 0, gradient, 0.01, 0);
         for (int k = 0; k < TED4_COLOUR_VALUES; k++) {
             assert_true(isfinite(c.value[1][k]));
             assert_true(fabsf(c.value[1][k]) < 0.11f);

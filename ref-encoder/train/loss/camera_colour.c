@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "camera_colour_job.h"
+#include "middle.h"
 
 enum { BAND = TED4_COLOUR_BAND };
 
@@ -91,6 +92,7 @@ int ted4_colour_init(ted4_colour *c, const ted4_dataset *d)
 
 void ted4_colour_finish(ted4_colour *c)
 {
+    ted4_exposure_finish(&c->exposure);
     free(c->corrected);
     free(c->steps);
     free(c->value);
@@ -114,15 +116,42 @@ int ted4_colour_finite(const ted4_colour *c)
         for (int k = 0; k < N; k++)
             if (!isfinite(c->value[i][k]))
                 return 0;
-    return 1;
+    return ted4_exposure_finite(&c->exposure);
 }
 
-const float *ted4_colour_apply(ted4_colour *c, uint32_t camera, const float *image, size_t pixels,
+void ted4_colour_at(const ted4_colour *c, uint32_t camera, uint32_t frame, ted4_colour_map map)
+{
+    float gain[3];
+
+    memcpy(map, c->value[camera], sizeof c->value[camera]);
+    if (c->exposure.n_knots == 0)
+        return;
+    ted4_exposure_at(&c->exposure, camera, frame, gain);
+    for (int k = 0; k < N; k++)
+        map[k] += gain[k % 3] * (map[k] + (k < ROW_V && k % 4 == 0 ? 1.0f : 0.0f));
+}
+
+void ted4_colour_split(const ted4_colour *c, uint32_t camera, uint32_t frame,
+                       ted4_colour_map gradient, float d_gain[3])
+{
+    const float *x = c->value[camera];
+    float gain[3] = { 0 };
+
+    if (c->exposure.n_knots > 0)
+        ted4_exposure_at(&c->exposure, camera, frame, gain);
+    for (int k = 0; k < 3; k++)
+        d_gain[k] = 0;
+    for (int k = 0; k < N; k++) {
+        /* in ted4_colour_at this was: map = x + gain (x + 1 on the diagonal) */
+        d_gain[k % 3] += gradient[k] * (x[k] + (k < ROW_V && k % 4 == 0 ? 1.0f : 0.0f));
+        gradient[k] *= 1.0f + gain[k % 3];
+    }
+}
+
+const float *ted4_colour_apply(ted4_colour *c, const float *map, const float *image, size_t pixels,
                                const ted4_parallel *p)
 {
-    ted4_colour_job j = {
-        .image = image, .map = c->value[camera], .to = c->image, .pixels = pixels
-    };
+    ted4_colour_job j = { .image = image, .map = map, .to = c->image, .pixels = pixels };
 
     ted4_parallel_for(p, n_bands(pixels), TED4_IN_USE(ted4_colour_apply_band), &j);
     return c->image;
@@ -174,10 +203,9 @@ static void undo_band(void *arg, size_t band)
     }
 }
 
-const uint8_t *ted4_colour_undo(ted4_colour *c, uint32_t camera, const uint8_t *picture,
+const uint8_t *ted4_colour_undo(ted4_colour *c, const float *map, const uint8_t *picture,
                                 size_t pixels, const ted4_parallel *p)
 {
-    const float *map = c->value[camera];
     undo_job j = { .picture = picture,
                    .to = c->seen,
                    .pixels = pixels,
@@ -189,10 +217,10 @@ const uint8_t *ted4_colour_undo(ted4_colour *c, uint32_t camera, const uint8_t *
     return c->seen;
 }
 
-void ted4_colour_backward(ted4_colour *c, uint32_t camera, const float *image, size_t pixels,
+void ted4_colour_backward(ted4_colour *c, const float *map, const float *image, size_t pixels,
                           const ted4_parallel *p, float *d_image, ted4_colour_map gradient)
 {
-    ted4_colour_job j = { image, c->value[camera], d_image, c->sums, pixels };
+    ted4_colour_job j = { image, map, d_image, c->sums, pixels };
 
     ted4_parallel_for(p, n_bands(pixels), TED4_IN_USE(ted4_colour_backward_band), &j);
     for (int k = 0; k < N; k++) {
@@ -204,28 +232,15 @@ void ted4_colour_backward(ted4_colour *c, uint32_t camera, const float *image, s
     }
 }
 
-static int compare(const void *x, const void *y)
-{
-    const float a = *(const float *)x, b = *(const float *)y;
-
-    return a < b ? -1 : a > b;
-}
-
-/* Returns the mean of value k over the cameras between the outer quartiles (interquartile
- * mean). */
+/* Returns the middle of value k over the corrected cameras. */
 static double middle_of(ted4_colour *c, int k)
 {
-    const size_t out = c->n_corrected / 4;
     size_t n = 0;
-    double sum = 0;
 
     for (size_t i = 0; i < c->n_cameras; i++)
         if (c->corrected[i])
             c->sorted[n++] = c->value[i][k];
-    qsort(c->sorted, n, sizeof *c->sorted, compare);
-    for (size_t i = out; i < n - out; i++)
-        sum += (double)c->sorted[i];
-    return sum / (double)(n - 2 * out);
+    return ted4_middle(c->sorted, n);
 }
 
 void ted4_colour_centre(ted4_colour *c)

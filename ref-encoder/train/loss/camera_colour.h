@@ -12,6 +12,7 @@
 #include <stdint.h>
 
 #include "base/parallel.h"
+#include "camera_exposure.h"
 #include "data/dataset.h"
 
 /* Values of one camera: A by rows (row: input colour, column: output colour), then, from
@@ -34,6 +35,8 @@ typedef struct {
     uint64_t *steps;    /* owned, [n_cameras] number of Adam steps */
     ted4_colour_map *value, *m, *v; /* owned, [n_cameras]; m, v: Adam's moments */
     ted4_colour_map middle;         /* the middle that all maps keep */
+    ted4_exposure exposure;         /* none unless exposures change (camera_exposure_init.h) */
+    double exposure_change;         /* how much they change, as a share; 0: not looked for */
     float *image;  /* owned: the corrected picture, planar, sized for the largest picture */
     uint8_t *seen; /* owned: a true picture in the scene's colours, interleaved */
     double *sums;  /* owned: gradients per band of pixels */
@@ -64,20 +67,31 @@ int ted4_colour_has(const ted4_colour *c, uint32_t camera);
 /* Returns whether all maps are finite. */
 int ted4_colour_finite(const ted4_colour *c);
 
+/* Sets map to what a camera makes of colours at a time: its own map, times the gain of each channel
+ * (camera_exposure.h). */
+void ted4_colour_at(const ted4_colour *c, uint32_t camera, uint32_t frame, ted4_colour_map map);
+
+/* gradient: in: dL/d(map of ted4_colour_at), out: dL/d(the camera's own map). Sets d_gain[3] to
+ * dL/d(gains). */
+void ted4_colour_split(const ted4_colour *c, uint32_t camera, uint32_t frame,
+                       ted4_colour_map gradient, float d_gain[3]);
+
+/* The functions below take a map, [TED4_COLOUR_VALUES], and room of c. */
+
 /* Returns the corrected picture, planar [3][pixels] like image; valid until the next call. */
-const float *ted4_colour_apply(ted4_colour *c, uint32_t camera, const float *image, size_t pixels,
+const float *ted4_colour_apply(ted4_colour *c, const float *map, const float *image, size_t pixels,
                                const ted4_parallel *p);
 
 /* Returns a true picture, interleaved bytes [pixels][3], in the scene's colours: (c - v) (I +
  * A)^-1, clamped to 0..255 and rounded. Returns the picture unchanged if the map is nearly
  * singular. Valid until the next call. */
-const uint8_t *ted4_colour_undo(ted4_colour *c, uint32_t camera, const uint8_t *picture,
+const uint8_t *ted4_colour_undo(ted4_colour *c, const float *map, const uint8_t *picture,
                                 size_t pixels, const ted4_parallel *p);
 
 /* image: as passed to ted4_colour_apply. d_image: planar; in: dL/d(corrected picture), out:
  * dL/d(image). gradient: dL/d(map), overwritten. Results are bit-identical for any number of
  * threads. */
-void ted4_colour_backward(ted4_colour *c, uint32_t camera, const float *image, size_t pixels,
+void ted4_colour_backward(ted4_colour *c, const float *map, const float *image, size_t pixels,
                           const ted4_parallel *p, float *d_image, ted4_colour_map gradient);
 
 #endif

@@ -15,7 +15,7 @@
 #include "train/model/header_from_options.h"
 
 #define MAGIC 0x34444554u /* "TED4" */
-enum { FORMAT = 13 };
+enum { FORMAT = 14 };
 
 typedef ted4_state_stream stream;
 
@@ -297,6 +297,13 @@ static void walk_capacity(stream *s, ted4_trainer *t)
                     t->search.trial[i].candidate >= TED4_CANDIDATES;
 }
 
+static void walk_exposure(stream *s, ted4_exposure *e)
+{
+    expect(s, e->n_knots);
+    put(s, e->steps, e->n_cameras * sizeof *e->steps);
+    put(s, e->value, 9 * e->n_cameras * e->n_knots * sizeof *e->value);
+}
+
 static void walk_colour(stream *s, ted4_trainer *t)
 {
     ted4_colour *c = &t->colour;
@@ -306,6 +313,7 @@ static void walk_colour(stream *s, ted4_trainer *t)
     put(s, c->value, c->n_cameras * sizeof *c->value);
     put(s, c->m, c->n_cameras * sizeof *c->m);
     put(s, c->v, c->n_cameras * sizeof *c->v);
+    walk_exposure(s, &c->exposure);
 }
 
 static void walk_poses(stream *s, ted4_trainer *t)

@@ -102,18 +102,20 @@ int ted4_trainer_draw(ted4_trainer *t, const ted4_picture *pic, ted4_view *v, fl
 int ted4_trainer_corrected(const ted4_trainer *t, const ted4_picture *pic)
 {
     return ted4_colour_has(&t->colour, pic->camera_id) &&
-           (t->colour.matched || t->phase.stage2 ||
+           (t->colour.matched || t->colour.exposure.n_knots > 0 || t->phase.stage2 ||
             (double)ted4_stage_position(t) >= t->opt.colour_start * (double)t->opt.stage1);
 }
 
-/* Returns t->work.image in the colours of the picture's camera. */
+/* Returns t->work.image in the colours of the picture's camera at its time. */
 static const float *shown(ted4_trainer *t, const ted4_picture *pic)
 {
     const size_t pixels = (size_t)pic->camera.width * (size_t)pic->camera.height;
+    ted4_colour_map map;
 
-    return ted4_trainer_corrected(t, pic)
-               ? ted4_colour_apply(&t->colour, pic->camera_id, t->work.image, pixels, t->parallel)
-               : t->work.image;
+    if (!ted4_trainer_corrected(t, pic))
+        return t->work.image;
+    ted4_colour_at(&t->colour, pic->camera_id, pic->frame, map);
+    return ted4_colour_apply(&t->colour, map, t->work.image, pixels, t->parallel);
 }
 
 const uint8_t *ted4_trainer_seen(ted4_trainer *t, size_t item)
@@ -122,9 +124,12 @@ const uint8_t *ted4_trainer_seen(ted4_trainer *t, size_t item)
     const size_t pixels = (size_t)pic->camera.width * (size_t)pic->camera.height;
     const uint8_t *truth = ted4_dataset_pixels(t->data, item, &t->message);
 
-    return truth != NULL && ted4_trainer_corrected(t, pic)
-               ? ted4_colour_undo(&t->colour, pic->camera_id, truth, pixels, t->parallel)
-               : truth;
+    ted4_colour_map map;
+
+    if (truth == NULL || !ted4_trainer_corrected(t, pic))
+        return truth;
+    ted4_colour_at(&t->colour, pic->camera_id, pic->frame, map);
+    return ted4_colour_undo(&t->colour, map, truth, pixels, t->parallel);
 }
 
 double ted4_trainer_loss(ted4_trainer *t, const ted4_picture *pic, const uint8_t *truth,
@@ -134,9 +139,13 @@ double ted4_trainer_loss(ted4_trainer *t, const ted4_picture *pic, const uint8_t
     const double loss = ted4_loss(t->work.loss, shown(t, pic), truth, width, height,
                                   (float)t->opt.ssim, t->parallel, t->work.d_image, l1, ssim);
 
-    if (map != NULL && ted4_trainer_corrected(t, pic) && loss >= 0)
-        ted4_colour_backward(&t->colour, pic->camera_id, t->work.image,
-                             (size_t)width * (size_t)height, t->parallel, t->work.d_image, map);
+    if (map != NULL && ted4_trainer_corrected(t, pic) && loss >= 0) {
+        ted4_colour_map at;
+
+        ted4_colour_at(&t->colour, pic->camera_id, pic->frame, at);
+        ted4_colour_backward(&t->colour, at, t->work.image, (size_t)width * (size_t)height,
+                             t->parallel, t->work.d_image, map);
+    }
     return loss;
 }
 

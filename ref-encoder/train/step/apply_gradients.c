@@ -118,15 +118,33 @@ void ted4_update_parameters(ted4_trainer *t, size_t n_views)
     ted4_parallel_for(t->parallel, j.n_pieces + t->visible_blocks.n, update_item, &j);
 }
 
-void ted4_colour_update(ted4_colour *c, uint32_t camera, const ted4_colour_map gradient,
-                        double rate, double penalty)
-{
-    float *x = c->value[camera];
-    float g[TED4_COLOUR_VALUES];
+/* Weight of squared second differences between knots of gains, as a multiple of that of squares. */
+#define SMOOTHNESS 10.0
 
+static void update_exposure(ted4_exposure *e, uint32_t camera, uint32_t frame, const float *d_gain,
+                            double rate, double penalty)
+{
+    const size_t n = 3 * e->n_knots, at = camera * n;
+
+    ted4_exposure_backward(e, camera, frame, d_gain, SMOOTHNESS * penalty, penalty);
+    ted4_adam(e->value + at, e->m + at, e->v + at, e->gradient, n, (float)rate,
+              ted4_adam_bias_make(++e->steps[camera]));
+    ted4_exposure_centre(e);
+}
+
+void ted4_colour_update(ted4_colour *c, uint32_t camera, uint32_t frame,
+                        const ted4_colour_map gradient, double rate, double penalty)
+{
+    float *x = c->value[camera], d_gain[3];
+    ted4_colour_map g;
+
+    memcpy(g, gradient, sizeof g);
+    ted4_colour_split(c, camera, frame, g, d_gain);
     for (int k = 0; k < TED4_COLOUR_VALUES; k++)
-        g[k] = gradient[k] + (float)(2.0 * penalty) * x[k];
+        g[k] += (float)(2.0 * penalty) * x[k];
     ted4_adam(x, c->m[camera], c->v[camera], g, TED4_COLOUR_VALUES, (float)rate,
               ted4_adam_bias_make(++c->steps[camera]));
     ted4_colour_centre(c);
+    if (c->exposure.n_knots > 0)
+        update_exposure(&c->exposure, camera, frame, d_gain, rate, penalty);
 }

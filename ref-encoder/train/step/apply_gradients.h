@@ -14,8 +14,9 @@
 void ted4_update_parameters(ted4_trainer *t, size_t n_views);
 
 /* Does one step of Adam for this camera on L + penalty (sum of A^2 and v^2), and then
- * ted4_colour_centre. gradient is dL/d(map). */
-void ted4_colour_update(ted4_colour *c, uint32_t camera, const ted4_colour_map gradient,
-                        double rate, double penalty);
+ * ted4_colour_centre; and likewise for its exposures, if there are any, whose squared second
+ * differences count, too. gradient is dL/d(map of ted4_colour_at). */
+void ted4_colour_update(ted4_colour *c, uint32_t camera, uint32_t frame,
+                        const ted4_colour_map gradient, double rate, double penalty);
 
 #endif

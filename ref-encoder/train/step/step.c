@@ -158,13 +158,14 @@ static void apply(ted4_trainer *t, pass *p)
     ted4_update_poses(t);
     t->monitor.norm[TED4_TERM_COLOUR] = 0;
     for (size_t i = 0; i < p->b.n; i++) {
+        const ted4_picture *pic = picture_of(t, p, i);
         const float *map = p->result[i].map;
 
-        if (!ted4_trainer_corrected(t, picture_of(t, p, i)))
+        if (!ted4_trainer_corrected(t, pic))
             continue;
         t->monitor.norm[TED4_TERM_COLOUR] += ted4_gradients_norm(map, TED4_COLOUR_VALUES) /
                                              (double)p->b.n;
-        ted4_colour_update(&t->colour, picture_of(t, p, i)->camera_id, map,
+        ted4_colour_update(&t->colour, pic->camera_id, pic->frame, map,
                            t->opt.lr_colour * t->monitor.state.factor, t->opt.colour_weight);
     }
 }

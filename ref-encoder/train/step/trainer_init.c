@@ -7,6 +7,7 @@
 
 #include "stage_judge.h"
 #include "train/densify/camera_colour_init.h"
+#include "train/densify/camera_exposure_init.h"
 #include "train/densify/short_lived.h"
 #include "train/math/random.h"
 #include "train/model/header_from_options.h"
@@ -89,7 +90,7 @@ static int begin(ted4_trainer *t, const ted4_header *h)
     if (t->anchors.n == 0)
         return ted4_trainer_fail(t, "no initial point lies inside the scene's bounds");
     ted4_init_networks(t->net.value, &t->layout, t->opt.seed);
-    if (ted4_camera_colour_init(t) != 0)
+    if (ted4_camera_colour_init(t) != 0 || ted4_camera_exposure_init(t) != 0)
         return -1;
     return t->opt.transients ? ted4_init_short_lived(t) : 0;
 }
