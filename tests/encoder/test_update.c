@@ -175,10 +175,30 @@ static void check_logits(const ted4_trainer *t, const float *before, int channel
         }
 }
 
+/* The weight of all offset masks together, if all anchors had the logits of those that are seen:
+ * 49 bits of each anchor besides its values, and the bits of these (3 + y^2 for type y). An
+ * anchor counts as if it kept at least one on average. */
+static double mask_weight(const ted4_trainer *t, const float *value)
+{
+    const size_t floats = (size_t)t->layout.n_channels * TED4_LANES;
+    const size_t first = (size_t)t->layout.offset_logit * TED4_LANES;
+    double kept = 0, seen = 0;
+
+    for (size_t b = 0; b < t->visible_blocks.n; b++) {
+        seen += __builtin_popcount(t->visible_blocks.lanes[b]);
+        for (size_t j = 0; j < (size_t)t->layout.head.n_offsets * TED4_LANES; j++)
+            kept += t->visible_blocks.lanes[b] >> j % TED4_LANES & 1 &&
+                    sigmoid((double)value[b * floats + first + j]) > 0.01;
+    }
+    return t->opt.lambda * t->opt.mask_weight * (49 + 3 + 4 + 7 + 12 + 19) * (double)t->anchors.n /
+           (ted4_rate_norm(t) * fmax(kept, seen));
+}
+
 static void test_masks(void **state)
 {
     (void)state;
-    for (int stage2 = 0; stage2 < 2; stage2++) {
+    for (int turn = 0; turn < 3; turn++) {
+        const int stage2 = turn > 0, closed = turn == 2;
         ted4_trainer t;
 
         begin(&t, 5);
@@ -188,11 +208,14 @@ static void test_masks(void **state)
         t.phase.stage2 = stage2;
         t.opt.lambda = 5;
         t.opt.temporal_weight = 0.7;
+        for (int y = 0; y < TED4_TYPES; y++)
+            t.progress.bits[y] = 3 + y * y;
         for (size_t i = 0; i < t.anchors.n; i++)
             for (int c = t.layout.offset_logit; c < t.layout.n_channels; c++)
                 *ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, i, c) =
-                    12.0f * ted4_uniform(3, i * 32 + (uint64_t)c) - 6.0f;
+                    closed ? -5.0f : 12.0f * ted4_uniform(3, i * 32 + (uint64_t)c) - 6.0f;
         assert_int_equal(ted4_visible_blocks_fill(&t, NULL), 0);
+        t.visible_blocks.lanes[0] &= 0x5a5a5a5a;
         memset(t.visible_blocks.gradients, 0, t.visible_blocks.n * floats * sizeof(float));
 
         float *before = malloc(t.visible_blocks.n * floats * sizeof *before);
@@ -200,11 +223,13 @@ static void test_masks(void **state)
         assert_non_null(before);
         memcpy(before, t.anchors.data[TED4_ROW_VALUE],
                t.visible_blocks.n * floats * sizeof *before);
+
+        const double weight = mask_weight(&t, before);
+
         ted4_update_parameters(&t, 1);
         check_logits(&t, before, t.layout.temporal_logit, 0.7);
         for (int k = 0; k < K; k++)
-            check_logits(&t, before, t.layout.offset_logit + k,
-                         stage2 ? 5 * t.opt.mask_weight / K : 0);
+            check_logits(&t, before, t.layout.offset_logit + k, stage2 ? weight : 0);
         free(before);
         ted4_trainer_finish(&t);
     }

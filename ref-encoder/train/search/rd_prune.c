@@ -16,10 +16,8 @@
 static const double prices[] = { 0.125, 0.25, 0.5, 1.0, 2.0, 4.0 };
 enum { N_PRICES = (int)(sizeof prices / sizeof prices[0]) };
 
-/* Bits of an anchor's position and of its motion flag. */
-#define ANCHOR_BITS 49.0
 /* A logit that masks its offset permanently. */
-#define OUT         (-10.0f)
+#define OUT (-10.0f)
 
 double ted4_rd_prune_steps(const ted4_trainer *t)
 {
@@ -74,7 +72,7 @@ static void prune_anchor(ted4_trainer *t, const worth *w, size_t i, double price
 {
     const size_t K = t->layout.head.n_offsets;
     const float *bits = w->bits + i / TED4_LANES * (1 + K) * TED4_LANES + i % TED4_LANES;
-    double left = 0, cost = price * (ANCHOR_BITS + (double)bits[0]);
+    double left = 0, cost = price * (TED4_RATE_ANCHOR_BITS + (double)bits[0]);
 
     for (size_t k = 0; k < K; k++) {
         const double use = (double)w->use[i * K + k],

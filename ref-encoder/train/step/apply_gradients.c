@@ -95,6 +95,41 @@ static void update_item(void *arg, size_t i)
         update_block(j, i - j->n_pieces);
 }
 
+/* Returns how many Gaussians the anchors that this step sees keep; at least one for each, so that
+ * the weight of masks cannot grow without end while all of them close. */
+static double count_kept(const ted4_trainer *t)
+{
+    const ted4_visible_blocks *s = &t->visible_blocks;
+    const size_t n = ted4_row_floats(t->layout.head.n_offsets);
+    uint64_t kept = 0, seen = 0;
+
+    for (size_t i = 0; i < s->n; i++) {
+        const float *x = s->raw[i] + ted4_row_floats((size_t)t->layout.offset_logit);
+
+        for (size_t j = 0; j < n; j++)
+            kept += (s->lanes[i] >> j % TED4_LANES & 1) && ted4_mask_on(x[j]);
+        for (uint32_t left = s->lanes[i]; left != 0; left &= left - 1)
+            seen++;
+    }
+    return (double)(kept > seen ? kept : seen);
+}
+
+/* Returns the weight of one offset mask in the loss: option mask_weight times the rate term of what
+ * a Gaussian costs on average, which is its part of all bits of its anchor. This cost is a running
+ * mean, and the same for all, because masks need a gradient in every step: the bits of single
+ * offsets are known only in the steps that evaluate their rate, and Adam would divide such bursts
+ * by the root of their mean square. As for the rate itself, the seen anchors stand for all: those
+ * that are seen rarely have a larger weight when they are. */
+static float offset_mask_weight(const ted4_trainer *t)
+{
+    double bits = TED4_RATE_ANCHOR_BITS; /* of an anchor */
+
+    for (int y = 0; y < TED4_TYPES; y++)
+        bits += t->progress.bits[y];
+    return (float)(t->opt.lambda * t->opt.mask_weight * bits /
+                   (ted4_rate_norm(t) * fmax(count_kept(t), 1.0)));
+}
+
 void ted4_update_parameters(ted4_trainer *t, size_t n_views)
 {
     const ted4_header *h = &t->layout.head;
@@ -107,8 +142,7 @@ void ted4_update_parameters(ted4_trainer *t, size_t n_views)
     for (int c = 0; c < t->layout.n_channels; c++)
         j.rate[c] *= more;
     if (t->phase.stage2 && h->offset_mask)
-        j.mask_weight =
-            (float)(t->opt.lambda * t->opt.mask_weight / (n * t->phase.rate_norm_header.n_offsets));
+        j.mask_weight = offset_mask_weight(t);
     if (h->motion != TED4_MOTION_NONE && h->temporal_mask)
         j.temporal_weight = (float)(t->opt.temporal_weight / n);
     for (int i = ted4_schedule_network(t, j.range) - 1; i >= 0; i--) {
