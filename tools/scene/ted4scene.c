@@ -84,9 +84,9 @@ static const ted4_command COMMAND = {
     options,
     N_OPTIONS,
     "--hold, --pose-error, --tint and --drift go with the layouts blender, nerfstudio\n"
-    "and hypernerf, which list what is held out; in others a NAME's hold is left out. The\n"
-    "options from --background on make files as other writers do; most of these go\n"
-    "together, and the content stays the same.\n\n"
+    "and hypernerf, which list what is held out; in others a NAME's hold is left out.\n"
+    "The options from --background on make files as other writers do; most of these\n"
+    "go together, and the content stays the same.\n\n"
     "Exit codes: 0 fine, 3 usage, input, output or resources.\n\n"
     "NAMEs, with picture size, training + test cameras, times, hold:\n",
     print_names,
