@@ -225,7 +225,7 @@ typedef struct {
     size_t tau; /* floats before the activation in a block */
 } wake_job;
 
-/* The comparison is false for numbers that are not finite, so that they are seen. */
+/* A time is within a life that is not a number (ted4_find_edge), so that the monitor sees it. */
 static void look_at_life(void *arg, size_t i)
 {
     const wake_job *w = arg;
@@ -236,7 +236,7 @@ static void look_at_life(void *arg, size_t i)
     for (int j = 0; j < TED4_LANES; j++) {
         const float u = ted4_find_edge(w->now, tau + j, ted4_pow2).u;
 
-        there[j] = !(ted4_activation(u, ted4_pow2) < LEAST_ACTIVATION);
+        there[j] = ted4_activation(u, ted4_pow2) >= LEAST_ACTIVATION;
     }
     w->s->sleeps[i] = !(lane_bits(there) & w->s->lanes[i]);
 }
