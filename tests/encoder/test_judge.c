@@ -210,9 +210,11 @@ static void test_level_of_stage2(void **state)
     (void)state;
     ball_set(&o, "stage1=100");
     ball_begin(&t, &o, &balls, NULL);
+    t.judge.state.n = TED4_JUDGE_GROUPS; /* of stage 1, which stage 2 forgets */
     while (t.judge.state.windows == 0)
         one_step(&t);
     assert_true(t.phase.stage2);
+    assert_int_equal(t.judge.state.n, 0);
     for (uint32_t i = 0; i < t.order.n; i++)
         if (t.judge.group[i] == t.judge.state.last) {
             loss += ted4_trainer_distortion(&t, i);
