@@ -214,7 +214,7 @@ static void test_level_of_stage2(void **state)
     while (t.judge.state.windows == 0)
         one_step(&t);
     assert_true(t.phase.stage2);
-    assert_int_equal(t.judge.state.n, 0);
+    assert_int_equal(t.phase.left_out[1], 0);
     for (uint32_t i = 0; i < t.order.n; i++)
         if (t.judge.group[i] == t.judge.state.last) {
             loss += ted4_trainer_distortion(&t, i);
@@ -254,7 +254,7 @@ static void test_stands_still(void **state)
     one_step(&t);
     assert_true(t.phase.stage2);
     assert_int_equal(t.judge.state.resting, 0);
-    assert_int_equal(t.judge.state.n, 0);
+    assert_int_equal(t.phase.left_out[1], 0);
     while (t.phase.left_out[1] == 0)
         one_step(&t);
     assert_int_equal(t.judge.state.windows, 5 * GROUPS);
