@@ -125,6 +125,7 @@ $B/tests/tools/test_align: $B/ref-encoder/tool/align.o
 $B/tests/tools/test_belongs: $(addprefix $B/ref-encoder/tool/,belongs.o sheet.o)
 $B/tests/tools/test_edit: $B/ref-encoder/tool/edit.o
 $B/tests/tools/test_fit_colours: $B/ref-encoder/tool/fit_colours.o
+$B/tests/tools/test_moving_pixels: $B/ref-encoder/tool/moving_pixels.o
 $B/tests/encoder/test_checkpoint_fields: $B/ref-encoder/tool/search_report.o
 $B/tests/tools/test_estimate: $B/ref-encoder/tool/estimate.o
 $B/tests/tools/test_install $B/tests/tools/test_library: | $(PROGS) $(SHARED) $B/ted4conf \

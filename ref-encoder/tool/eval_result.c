@@ -21,6 +21,10 @@ static void print_text(const ted4_eval_sums *t, const ted4_eval_style *style)
         printf("raw        %.4f dB\nfitted     %.4f dB\n", t->raw / fitted, t->fitted / fitted);
     if (style->colours)
         printf("of         %zu views\n", t->fitted_views);
+    if (style->moving && t->moving.pixels > 0)
+        printf("moving     %.4f dB\n", ted4_moving_psnr(&t->moving));
+    if (style->moving)
+        printf("of         %zu pixels in %zu views\n", t->moving.pixels, t->moving.views);
 }
 
 /* Returns null for a metric that is infinite or undefined (its window exceeds the picture, or it is
@@ -50,6 +54,11 @@ static void print_json(const ted4_eval_sums *t, const ted4_info *info, const ted
         json_object_set_new(o, "psnr_raw", number(t->raw / fitted));
         json_object_set_new(o, "psnr_fitted", number(t->fitted / fitted));
         json_object_set_new(o, "views_fitted", json_integer((json_int_t)t->fitted_views));
+    }
+    if (style->moving) {
+        json_object_set_new(o, "psnr_moving", number(ted4_moving_psnr(&t->moving)));
+        json_object_set_new(o, "pixels_moving", json_integer((json_int_t)t->moving.pixels));
+        json_object_set_new(o, "views_moving", json_integer((json_int_t)t->moving.views));
     }
     json_dumpf(o, stdout, JSON_COMPACT | JSON_REAL_PRECISION(6));
     putchar('\n');

@@ -17,8 +17,10 @@
 #include "camera_view.h"
 #include "data/dataset.h"
 #include "eval/metrics.h"
+#include "eval_images.h"
 #include "eval_result.h"
 #include "fit_colours.h"
+#include "moving_pixels.h"
 #include "render/png_file.h"
 #include "render/view.h"
 #include "sheet.h"
@@ -41,6 +43,7 @@ enum {
     OPT_THREADS,
     OPT_ALIGN,
     OPT_COLOURS,
+    OPT_MOVING,
     OPT_ANYWAY,
     OPT_FORCE,
     OPT_JSON,
@@ -52,7 +55,6 @@ enum {
 };
 
 enum { MAX_DOWNSCALE = 64, MAX_MAX_FRAMES = 36000, MAX_HOLD_OUT = 256, SHEET_ROWS = 4 };
-enum { PATH_SIZE = 4096 };
 
 static const ted4_argument OPTIONS[N_OPTIONS] = {
     [OPT_SPLIT] = { 0, "split", "NAME", "test (default) or train pictures" },
@@ -72,6 +74,8 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
                     "also fit each picture's pose on half of it, judge the other" },
     [OPT_COLOURS] = { 0, "colours", NULL,
                       "also fit each camera's colours on its training pictures" },
+    [OPT_MOVING] = { 0, "moving", NULL,
+                     "also judge the pixels that show what moves before still cameras" },
     [OPT_ANYWAY] = { 0, "anyway", NULL, "compare also where the file cannot be of this scene" },
     [OPT_FORCE] = { 'f', "force", NULL, "overwrite pictures" },
     [OPT_JSON] = { 0, "json", NULL, "result as one JSON object" },
@@ -102,7 +106,7 @@ typedef struct {
     size_t n_hold_out;
     int premultiplied;
     int want_test, downscale, max_frames, threads;
-    int align, colours, anyway, force, json, quiet, verbose;
+    int align, colours, moving, anyway, force, json, quiet, verbose;
 } settings;
 
 typedef struct {
@@ -115,6 +119,7 @@ typedef struct {
     size_t row[SHEET_ROWS]; /* index of the picture in each row of the sheet */
     ted4_sheet sheet;
     ted4_fitted_colours *colours; /* [data.n_cameras], or NULL without --colours */
+    uint8_t **median;             /* [data.n_cameras], moving_pixels.h; NULL without --moving */
     ted4_eval_sums sum;
     ted4_belongs_sum squares;
 } session;
@@ -182,9 +187,9 @@ static int set_option(settings *s, int option, const char *value)
     default: break;
     }
     int *const flag[N_OPTIONS] = {
-        [OPT_ALIGN] = &s->align,    [OPT_COLOURS] = &s->colours, [OPT_ANYWAY] = &s->anyway,
-        [OPT_FORCE] = &s->force,    [OPT_JSON] = &s->json,       [OPT_QUIET] = &s->quiet,
-        [OPT_VERBOSE] = &s->verbose
+        [OPT_ALIGN] = &s->align,   [OPT_COLOURS] = &s->colours, [OPT_MOVING] = &s->moving,
+        [OPT_ANYWAY] = &s->anyway, [OPT_FORCE] = &s->force,     [OPT_JSON] = &s->json,
+        [OPT_QUIET] = &s->quiet,   [OPT_VERBOSE] = &s->verbose
     };
 
     *flag[option] = 1;
@@ -294,39 +299,15 @@ static int choose_rows(session *s)
 
 /* ---- one picture ---- */
 
-static int write_image(const session *s, const char *kind, const ted4_camera *c, const uint8_t *rgb)
+static int write_images(const session *s, size_t i, const uint8_t *truth, const uint8_t *ours)
 {
-    char path[PATH_SIZE], why[256];
-    int n = snprintf(path, sizeof path, "%s/%s", s->set->images, kind);
+    const ted4_picture *const p = &s->data.pictures[i];
+    const uint8_t *const median = s->median == NULL ? NULL : s->median[p->camera_id];
+    const ted4_eval_images to = { s->set->images, s->set->force, s->sum.views };
+    ted4_message m;
 
-    if (n > 0 && n < PATH_SIZE && mkdir(path, 0777) != 0 && errno != EEXIST)
-        return failed(path, strerror(errno));
-    n = snprintf(path, sizeof path, "%s/%s/%05zu.png", s->set->images, kind, s->sum.views);
-    if (n < 0 || n >= PATH_SIZE)
-        return failed(s->set->images, "name too long");
-    if (!s->set->force && access(path, F_OK) == 0)
-        return failed(path, "exists; -f overwrites");
-    return ted4_png_write(path, c->width, c->height, rgb, why, sizeof why) == 0 ? TED4_EXIT_FINE
-                                                                                : failed(path, why);
-}
-
-static int write_images(const session *s, const ted4_camera *c, const uint8_t *truth,
-                        const uint8_t *ours)
-{
-    const size_t size = (size_t)c->width * (size_t)c->height * 3;
-    uint8_t *const error = malloc(size);
-    int code;
-
-    if (error == NULL)
-        return failed(s->set->images, "out of memory");
-    ted4_sheet_error(truth, ours, size, error);
-    code = write_image(s, "truth", c, truth);
-    if (code == TED4_EXIT_FINE)
-        code = write_image(s, "ours", c, ours);
-    if (code == TED4_EXIT_FINE)
-        code = write_image(s, "error", c, error);
-    free(error);
-    return code;
+    return ted4_eval_images_write(&to, &p->camera, truth, ours, median, &m) == 0 ? TED4_EXIT_FINE
+                                                                                 : complain(m.text);
 }
 
 /* Adds the metrics of a rendered picture to the sums, and writes it to --images and --sheet. */
@@ -344,7 +325,7 @@ static int take_picture(session *s, size_t i, const uint8_t *truth, const uint8_
                 p->path, p->frame, m.psnr, m.ssim, m.ssim2, m.ms_ssim);
     }
     if (s->set->images != NULL)
-        code = write_images(s, &p->camera, truth, ours);
+        code = write_images(s, i, truth, ours);
     for (int r = 0; s->set->sheet != NULL && r < s->sheet.rows; r++)
         if (s->row[r] == i)
             ted4_sheet_put(&s->sheet, r, truth, ours);
@@ -376,21 +357,6 @@ static int draw(void *user, const ted4_camera *camera, uint8_t *rgb)
     return a->status != TED4_OK;
 }
 
-/* Returns how far the middle of the file's scene is from a camera, but at least its size. */
-static double distance_to(const ted4_info *info, const ted4_camera *c)
-{
-    double square = 0;
-
-    for (int i = 0; i < 3; i++) {
-        double x = c->t[i];
-
-        for (int j = 0; j < 3; j++)
-            x += c->R[3 * i + j] * (double)info->origin[j];
-        square += x * x;
-    }
-    return fmax(sqrt(square), ldexp(1.0, info->exponent));
-}
-
 /* Fits the pose of a picture (align.h), which changes neither the file nor any other picture, and
  * judges the other half of it. ours: room for a picture; holds the one from the given pose. */
 static int align_picture(session *s, const ted4_picture *p, const uint8_t *truth, uint8_t *ours)
@@ -400,7 +366,7 @@ static int align_picture(session *s, const ted4_picture *p, const uint8_t *truth
     const double given = ted4_align_psnr(truth, ours, c->width, c->height);
     ted4_camera fitted;
 
-    if (ted4_align(c, distance_to(&s->info, c), truth, draw, &a, &fitted) != 0 ||
+    if (ted4_align(c, ted4_distance_to(&s->info, c), truth, draw, &a, &fitted) != 0 ||
         draw(&a, &fitted, ours) != 0) {
         ted4_teller_clear(&teller);
         return ted4_report("ted4eval", s->set->input, &(ted4_error) { a.status, 0 }, s->set->json);
@@ -455,6 +421,24 @@ static void judge_colours(session *s, const ted4_picture *p, const uint8_t *trut
                 fitted);
 }
 
+/* Judges the pixels of a picture that show what moves, if its camera stands still. */
+static void judge_moving(session *s, const ted4_picture *p, const uint8_t *truth,
+                         const uint8_t *ours)
+{
+    ted4_moving_sum of = { 0 };
+
+    if (s->median[p->camera_id] == NULL)
+        return;
+    ted4_moving_add(&of, s->median[p->camera_id], truth, ours,
+                    (size_t)p->camera.width * (size_t)p->camera.height, NULL);
+    s->sum.moving.square += of.square;
+    s->sum.moving.pixels += of.pixels;
+    s->sum.moving.views++;
+    if (s->set->verbose)
+        fprintf(stderr, "%s frame %" PRIu32 ": moving %.4f of %zu pixels\n", p->path, p->frame,
+                ted4_moving_psnr(&of), of.pixels);
+}
+
 static int evaluate_picture(session *s, size_t i)
 {
     const ted4_picture *const p = &s->data.pictures[i];
@@ -476,6 +460,8 @@ static int evaluate_picture(session *s, size_t i)
             code = take_picture(s, i, truth, ours);
             if (code == TED4_EXIT_FINE && s->set->colours)
                 judge_colours(s, p, truth, ours);
+            if (code == TED4_EXIT_FINE && s->set->moving)
+                judge_moving(s, p, truth, ours);
             if (code == TED4_EXIT_FINE && s->set->align)
                 code = align_picture(s, p, truth, ours);
             ted4_dataset_release(&s->data, i);
@@ -522,6 +508,7 @@ static int evaluate(session *s)
     const settings *const set = s->set;
     size_t n = 0;
     char why[256];
+    ted4_message m;
     int code = TED4_EXIT_FINE;
 
     for (size_t i = 0; i < s->data.n_pictures; i++)
@@ -539,6 +526,10 @@ static int evaluate(session *s)
         code = choose_rows(s);
     if (code == TED4_EXIT_FINE && set->colours)
         code = fit_colours(s);
+    if (code == TED4_EXIT_FINE && set->moving)
+        code = ted4_moving_medians(&s->data, set->want_test, &s->median, &m) == 0
+                   ? TED4_EXIT_FINE
+                   : complain(m.text);
     for (size_t i = 0; i < s->data.n_pictures && code == TED4_EXIT_FINE; i++) {
         if (!in_split(s, i))
             continue;
@@ -555,7 +546,7 @@ static int evaluate(session *s)
     if (code == TED4_EXIT_FINE)
         ted4_eval_print(&s->sum, &s->info,
                         &(ted4_eval_style) { set->want_test ? "test" : "train", set->json,
-                                             set->align, set->colours });
+                                             set->align, set->colours, set->moving });
     return code;
 }
 
@@ -580,6 +571,7 @@ int main(int argc, char **argv)
     ted4_sheet_finish(&s.sheet);
     ted4_viewer_free(s.viewer);
     free(s.colours);
+    ted4_moving_free(s.median, s.data.n_cameras);
     ted4_dataset_free(&s.data);
     ted4_recon_free(s.recon);
     ted4_threads_finish(&s.parallel);

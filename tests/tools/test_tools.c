@@ -382,6 +382,50 @@ static void check_colours(double psnr)
                      0);
 }
 
+/* Cameras with one picture each have no median. Six pictures of one camera have: p1 is the one that
+ * differs, and what the file shows is as near to p0 as before. */
+static void check_moving(double psnr)
+{
+    json_t *root, *frame;
+    char path[PATH_SIZE];
+
+    assert_int_equal(run("ted4eval v1.ted4 scene --anyway --json --moving"), 0);
+    assert_true(result("psnr") == psnr);
+    assert_true(result("views_moving") == 0);
+    assert_true(result("psnr_moving") == -1.0); /* null */
+    assert_int_equal(run("mkdir before && for i in 0 1 2 3 4; do cp scene/p0.png before/q$i.png; "
+                         "done && cp scene/p1.png before/q5.png"),
+                     0);
+    path_of(path, "scene/transforms_test.json");
+    root = json_load_file(path, 0, NULL);
+    assert_non_null(root);
+    frame = json_deep_copy(json_array_get(json_object_get(root, "frames"), 0));
+    json_array_clear(json_object_get(root, "frames"));
+    for (int i = 0; i < 6; i++) {
+        char name[16];
+
+        snprintf(name, sizeof name, "q%d.png", i);
+        json_object_set_new(frame, "file_path", json_string(name));
+        json_object_set_new(frame, "time", json_real(0.1 * i));
+        json_array_append_new(json_object_get(root, "frames"), json_deep_copy(frame));
+    }
+    json_decref(frame);
+    json_incref(root); /* save releases it */
+    save(root, "before/transforms_train.json");
+    save(root, "before/transforms_test.json");
+    assert_int_equal(run("ted4eval v1.ted4 before --anyway --json --moving --images moved"), 0);
+    assert_true(result("views_moving") == 6);
+    assert_true(result("pixels_moving") > 0);
+    assert_true(result("pixels_moving") < WIDTH * HEIGHT);
+    assert_true(result("psnr_moving") > 0 && result("psnr_moving") < result("psnr"));
+    assert_true(exists("moved/moving/00005.png"));
+    assert_int_equal(run("cmp moved/moving/00000.png moved/moving/00004.png"), 0);
+    assert_int_equal(run("cmp -s moved/moving/00000.png moved/moving/00005.png"), 1);
+    assert_int_equal(run("ted4eval v1.ted4 before --anyway --moving"), 0);
+    assert_non_null(strstr(out, "moving     "));
+    assert_non_null(strstr(out, "pixels in 6 views"));
+}
+
 /* Pictures that differ from what the file shows by one step everywhere. */
 static void test_eval(void **state)
 {
@@ -428,6 +472,7 @@ static void test_eval(void **state)
 
     check_aligned(psnr);
     check_colours(psnr);
+    check_moving(psnr);
     path_of(path, "sheet.png");
     assert_int_equal(ted4_image_probe(path, &sheet, &m), 0);
     assert_int_equal(sheet.width, 3 * WIDTH);

@@ -1,0 +1,21 @@
+/* eval_images.h - the folders of pictures that ted4eval --images writes. Depends on data/dataset.h,
+ * render/png_file.h, moving_pixels.h.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#ifndef TED4_EVAL_IMAGES_H
+#define TED4_EVAL_IMAGES_H
+
+#include "data/dataset.h"
+
+typedef struct {
+    const char *folder; /* exists */
+    int overwrite;
+    size_t number; /* of the picture: it is named NNNNN.png */
+} ted4_eval_images;
+
+/* Writes a picture to the folders truth, ours, and error (5 times the difference), and with a
+ * median (moving_pixels.h; or else NULL) its mask to moving. truth, ours, median:
+ * [height][width][3] of the camera. Returns 0, or -1 with *m filled. */
+int ted4_eval_images_write(const ted4_eval_images *to, const ted4_camera *c, const uint8_t *truth,
+                           const uint8_t *ours, const uint8_t *median, ted4_message *m);
+
+#endif
