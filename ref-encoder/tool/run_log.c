@@ -339,25 +339,6 @@ int ted4_run_log_poses(ted4_run_log *l, const ted4_trainer *t, char *why, size_t
     return put_line(l, line, (size_t)n, why, why_size);
 }
 
-int ted4_run_log_judge(ted4_run_log *l, const ted4_trainer *t, char *why, size_t why_size)
-{
-    const ted4_judge_state *s = &t->judge.state;
-    char line[200];
-
-    if (l->file < 0)
-        return 0;
-
-    const int n = snprintf(line, sizeof line,
-                           "{\"step\":%llu,\"event\":\"judge\",\"rollbacks\":%llu,\"stage\":%d,"
-                           "\"group\":%d,\"level\":%.6f,\"gain\":%.4f,\"left_out\":%llu}\n",
-                           (unsigned long long)t->iteration,
-                           (unsigned long long)t->monitor.state.rollbacks, t->phase.stage2 ? 2 : 1,
-                           (int)s->last, s->level[s->last - 1], s->gain[s->last - 1],
-                           (unsigned long long)s->left_out);
-
-    return put_line(l, line, (size_t)n, why, why_size);
-}
-
 int ted4_run_log_close(ted4_run_log *l, char *why, size_t why_size)
 {
     const int file = l->file;

@@ -107,17 +107,6 @@ int ted4_run_log_poses(ted4_run_log *l, const ted4_trainer *t, char *why, size_t
  *   anchors moving closed  numbers of anchors; of those that moved; of those that no longer do
  * Returns the same as ted4_run_log_step. */
 int ted4_run_log_closing(ted4_run_log *l, const ted4_trainer *t, char *why, size_t why_size);
-/* Writes one line about a decision of the judge (train/step/stage_judge.h):
- *   step                   the step at which training continues
- *   event                  "judge"
- *   rollbacks              number of rollbacks so far
- *   stage                  1 or 2
- *   group                  number of the group of pictures that have rested
- *   level                  their loss; in stage 2 with lambda times the bits per value
- *   gain                   by how much it has fallen since the group last rested, as a share
- *   left_out               steps of the stage that are left out because levels stand still
- * Returns the same as ted4_run_log_step. */
-int ted4_run_log_judge(ted4_run_log *l, const ted4_trainer *t, char *why, size_t why_size);
 /* Closes the file. Returns 0, or -1 with why filled. */
 int ted4_run_log_close(ted4_run_log *l, char *why, size_t why_size);
 

@@ -222,19 +222,6 @@ static int tell_poses(ted4_training *t)
     return ted4_run_log_poses(&t->log, t->trainer, t->why, sizeof t->why);
 }
 
-/* Reports what the judge has measured and decided. */
-static int tell_judge(ted4_training *t)
-{
-    const ted4_trainer *tr = t->trainer;
-    const uint64_t steps = tr->judge.state.left_out;
-
-    if (steps > 0)
-        ted4_teller_say(t->teller,
-                        "judge: pictures at rest stand still; %llu steps of stage %d are left out",
-                        (unsigned long long)steps, tr->phase.stage2 ? 2 : 1);
-    return ted4_run_log_judge(&t->log, tr, t->why, sizeof t->why);
-}
-
 /* Handles a failed step. If the cause is an anomaly, it becomes the last line of the log. */
 static int fail_step(ted4_training *t)
 {
@@ -254,7 +241,6 @@ static int step(ted4_training *t)
     const size_t trials = tr->search.n_trials;
     const ted4_poses_decision poses = tr->poses.decision;
     const int closed = tr->closing.moving > 0;
-    const uint64_t windows = tr->judge.state.windows;
 
     if (ted4_trainer_step(tr) != 0)
         return fail_step(t);
@@ -267,8 +253,6 @@ static int step(ted4_training *t)
         return -1;
     if (!closed && tr->closing.moving > 0 &&
         ted4_run_log_closing(&t->log, tr, t->why, sizeof t->why) != 0)
-        return -1;
-    if (tr->judge.state.windows > windows && tell_judge(t) != 0)
         return -1;
     if (tr->search.n_trials > trials &&
         ted4_run_log_trials(&t->log, tr, trials, t->why, sizeof t->why) != 0)

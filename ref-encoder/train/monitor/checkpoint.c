@@ -15,7 +15,7 @@
 #include "train/model/header_from_options.h"
 
 #define MAGIC 0x34444554u /* "TED4" */
-enum { FORMAT = 14 };
+enum { FORMAT = 15 };
 
 typedef ted4_state_stream stream;
 
@@ -200,7 +200,7 @@ static int order_is_whole(const ted4_trainer *t)
 {
     const ted4_order *o = &t->order;
     uint8_t *seen = calloc(t->data->n_pictures + 1, 1);
-    int whole = seen != NULL && o->rest <= o->n && o->next <= o->n - o->rest;
+    int whole = seen != NULL && o->next <= o->n;
 
     for (uint32_t i = 0; whole && i < o->n; i++) {
         const uint32_t p = o->item[i];
@@ -218,13 +218,11 @@ static int numbers_are_possible(const ted4_trainer *t)
 {
     return (t->phase.stage2 == 0 || t->phase.stage2 == 1) &&
            (t->phase.integer == 0 || t->phase.integer == 1) &&
-           t->phase.integer <= t->phase.stage2 && t->phase.left_out[0] <= (uint64_t)t->opt.stage1 &&
-           t->phase.left_out[1] <= (uint64_t)t->opt.stage2 &&
-           t->iteration <= ted4_trainer_total(t) && t->phase.stage2_start <= t->iteration &&
-           t->voxel >= TED4_FINEST_VOXEL && t->voxel <= 1e30 &&
-           t->search.decided >= TED4_DECIDED_NOTHING && t->search.decided <= TED4_DECIDED_ALL &&
-           t->monitor.state.factor > 0 && t->monitor.state.factor <= 1 &&
-           t->monitor.state.rollbacks <= TED4_ROLLBACKS;
+           t->phase.integer <= t->phase.stage2 && t->iteration <= ted4_trainer_total(t) &&
+           t->phase.stage2_start <= t->iteration && t->voxel >= TED4_FINEST_VOXEL &&
+           t->voxel <= 1e30 && t->search.decided >= TED4_DECIDED_NOTHING &&
+           t->search.decided <= TED4_DECIDED_ALL && t->monitor.state.factor > 0 &&
+           t->monitor.state.factor <= 1 && t->monitor.state.rollbacks <= TED4_ROLLBACKS;
 }
 
 /* Writes or reads the last good state. It is a state of this format, and is checked when it is
@@ -331,17 +329,6 @@ static void walk_poses(stream *s, ted4_trainer *t)
                  !(p->decision >= TED4_POSES_ON_TRIAL && p->decision <= TED4_POSES_GIVEN);
 }
 
-static void walk_judge(stream *s, ted4_trainer *t)
-{
-    ted4_judge_state *j = &t->judge.state;
-
-    expect(s, t->judge.group != NULL);
-    put(s, j, sizeof *j);
-    s->failed |= !s->writing && !s->failed &&
-                 !(j->resting <= (t->judge.group != NULL ? TED4_JUDGE_GROUPS : 0) &&
-                   j->begin <= t->iteration);
-}
-
 static void expect_digest(stream *s, ted4_trainer *t)
 {
     const int before = s->failed;
@@ -370,7 +357,6 @@ static void walk(stream *s, ted4_trainer *t)
     put(s, &t->seconds, sizeof t->seconds);
     put(s, &t->phase.integer, sizeof t->phase.integer);
     put(s, &t->phase.stage2_start, sizeof t->phase.stage2_start);
-    put(s, t->phase.left_out, sizeof t->phase.left_out);
     put(s, &t->search.probed, sizeof t->search.probed);
     put(s, t->search.probe_loss, sizeof t->search.probe_loss);
     put(s, &t->closing, sizeof t->closing);
@@ -380,8 +366,6 @@ static void walk(stream *s, ted4_trainer *t)
     put(s, t->order.item, t->order.n * sizeof *t->order.item);
     put(s, &t->order.next, sizeof t->order.next);
     put(s, &t->order.round, sizeof t->order.round);
-    put(s, &t->order.rest, sizeof t->order.rest);
-    walk_judge(s, t);
     s->failed |= !s->writing && !s->failed && !(order_is_whole(t) && numbers_are_possible(t));
     walk_colour(s, t);
     walk_poses(s, t);

@@ -50,7 +50,7 @@ int ted4_monitor_recover(ted4_trainer *t)
     t->seconds = seconds;
     /* If no step lies between the good state and the failure, smaller learning rates change
      * nothing; therefore that picture is skipped. */
-    if (failed == t->iteration && t->order.next < t->order.n - t->order.rest)
+    if (failed == t->iteration && t->order.next < t->order.n)
         t->order.next++;
     ted4_monitor_forget(t);
     return 0;

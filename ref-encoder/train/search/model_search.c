@@ -63,9 +63,9 @@ static int trial_steps(const ted4_trainer *t)
 
 uint64_t ted4_model_search_due_step(const ted4_trainer *t)
 {
-    return t->opt.capacity && t->opt.stage2 > 0 ? (uint64_t)t->opt.stage1 - t->phase.left_out[0] +
-                                                      (uint64_t)(DECIDE_AT * (double)t->opt.stage2)
-                                                : UINT64_MAX;
+    return t->opt.capacity && t->opt.stage2 > 0
+               ? (uint64_t)t->opt.stage1 + (uint64_t)(DECIDE_AT * (double)t->opt.stage2)
+               : UINT64_MAX;
 }
 
 static int note(search *s, ted4_candidate m, int from, int to, int taken, int steps,

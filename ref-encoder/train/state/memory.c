@@ -40,7 +40,6 @@ void ted4_trainer_finish(ted4_trainer *t)
     free(t->net.shift);
     free(t->search.trial);
     free(t->order.item);
-    free(t->judge.group);
     ted4_generator_free(t->work.generator);
     ted4_rate_free(t->work.rate);
     ted4_raster_free(t->work.raster);

@@ -57,14 +57,12 @@ double ted4_rate_norm(const ted4_trainer *t)
 
 uint64_t ted4_trainer_total(const ted4_trainer *t)
 {
-    return (uint64_t)t->opt.stage1 + (uint64_t)t->opt.stage2 - t->phase.left_out[0] -
-           t->phase.left_out[1];
+    return (uint64_t)t->opt.stage1 + (uint64_t)t->opt.stage2;
 }
 
 uint64_t ted4_stage_position(const ted4_trainer *t)
 {
-    return t->phase.stage2 ? t->iteration - t->phase.stage2_start + t->phase.left_out[1]
-                           : t->iteration + t->phase.left_out[0];
+    return t->phase.stage2 ? t->iteration - t->phase.stage2_start : t->iteration;
 }
 
 int ted4_at_stage1_end(const ted4_trainer *t)

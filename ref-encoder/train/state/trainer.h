@@ -7,7 +7,6 @@
 #include "base/parallel.h"
 #include "data/dataset.h"
 #include "exchange.h"
-#include "judge_state.h"
 #include "monitor_state.h"
 #include "search_state.h"
 #include "train/loss/camera_colour.h"
@@ -26,7 +25,6 @@
 typedef struct {
     uint32_t *item; /* owned: picture numbers */
     uint32_t n, next;
-    uint32_t rest; /* pictures at the end of item that this round leaves out */
     uint64_t key, round;
     double cameras; /* pictures per time, over the times that have any */
 } ted4_order;
@@ -88,8 +86,6 @@ typedef struct {
     int stage2, integer;
     int clock_stopped;     /* render everything at time 0 and without activation */
     uint64_t stage2_start; /* Adam's step count restarts there */
-    uint64_t
-        left_out[2]; /* steps of the schedule of stage 1, of stage 2, that the judge left out */
     /* The initial header; from the start of stage 2 on, the header at that start. The weights of a
      * bit and of a mask refer to this model, whatever becomes of it later. */
     ted4_header rate_norm_header;
@@ -143,7 +139,6 @@ typedef struct {
     ted4_order order;
     ted4_progress progress;
     ted4_monitor monitor;
-    ted4_judge judge;
 
     /* Results about motion: densify/still_anchors.h. */
     ted4_closing closing;
@@ -190,10 +185,9 @@ void ted4_trainer_view(const ted4_trainer *t, const ted4_picture *pic, ted4_view
 /* The rate norm: the number of values per anchor over which the weight of a bit is spread, in the
  * model at the start of stage 2 (before stage 2: in the initial model). */
 double ted4_rate_norm(const ted4_trainer *t);
-/* Total number of steps in both stages, without those left out. */
+/* Total number of steps in both stages. */
 uint64_t ted4_trainer_total(const ted4_trainer *t);
-/* Returns where the schedule of the present stage stands, from 0 to t->opt.stage1 or stage2: steps
- * done in this stage and steps left out. */
+/* Returns the number of steps done in the present stage. */
 uint64_t ted4_stage_position(const ted4_trainer *t);
 /* Returns whether the last step was that of stage 1, and stage 2 has not begun. */
 int ted4_at_stage1_end(const ted4_trainer *t);

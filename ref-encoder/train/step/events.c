@@ -98,23 +98,6 @@ int ted4_integer_due(const ted4_trainer *t)
     return t->phase.stage2 && !t->phase.integer && ted4_stage_position(t) >= integer_step(t);
 }
 
-uint64_t ted4_schedule_next(const ted4_trainer *t)
-{
-    const double stage1 = (double)t->opt.stage1;
-    const uint64_t now = ted4_stage_position(t),
-                   event[] = { stage1_step(t, SEED_AT_SINGLE_VIEW), stage1_step(t, SEED_AT),
-                               ted4_activation_step(&t->opt), stage1_step(t, t->opt.grow_until),
-                               stage1_step(t, CLOSE_AT) };
-    uint64_t next = (uint64_t)(t->phase.stage2 ? t->opt.stage2 : stage1);
-
-    if (t->phase.stage2)
-        return now < integer_step(t) ? integer_step(t) : next;
-    for (size_t i = 0; i < sizeof event / sizeof *event; i++)
-        if (event[i] > now && event[i] < next)
-            next = event[i];
-    return next;
-}
-
 int ted4_schedule_event(ted4_trainer *t)
 {
     const ted4_train_options *o = &t->opt;

@@ -10,9 +10,6 @@
 int ted4_schedule_event(ted4_trainer *t);
 /* Returns whether the integer stage begins with the next step. */
 int ted4_integer_due(const ted4_trainer *t);
-/* Returns the place in the schedule of the present stage (ted4_stage_position) of the next event or
- * of the end of the stage: what happens until then are steps, growth and pruning. */
-uint64_t ted4_schedule_next(const ted4_trainer *t);
 /* For estimates of time: the shares of stage 1 at which growth begins and seeding takes
  * place, and the share of anchors that is reserved for seeding, 0 if there will be none. */
 void ted4_schedule_growth(const ted4_trainer *t, double *from, double *mv_seed_at,

@@ -6,28 +6,9 @@
 
 #include "train/math/random.h"
 
-/* Moves pictures that rest (stage_judge.h) behind all others. Returns how many these are. */
-static uint32_t put_to_rest(ted4_trainer *t)
+static void shuffle(ted4_order *o)
 {
-    ted4_order *o = &t->order;
-    uint32_t n = 0;
-
-    for (uint32_t i = 0; i < o->n && t->judge.state.resting > 0; i++) {
-        const uint32_t x = o->item[i];
-
-        if (t->judge.group[x] == t->judge.state.resting) {
-            n++;
-        } else {
-            o->item[i] = o->item[i - n];
-            o->item[i - n] = x;
-        }
-    }
-    return n;
-}
-
-static void shuffle(ted4_order *o, uint32_t n)
-{
-    for (uint32_t i = n; i > 1; i--) {
+    for (uint32_t i = o->n; i > 1; i--) {
         const uint32_t j = ted4_below(o->key, o->round << 32 | i, i);
         const uint32_t x = o->item[i - 1];
 
@@ -76,9 +57,10 @@ static void make_batches(const ted4_order *o, card *c, uint32_t n, uint32_t most
 }
 
 /* Does the same as shuffle(), with the pictures of a batch next to one another. */
-static int shuffle_batches(ted4_trainer *t, uint32_t n)
+static int shuffle_batches(ted4_trainer *t)
 {
     ted4_order *o = &t->order;
+    const uint32_t n = o->n;
     card *c = malloc((n + 1) * sizeof *c);
 
     if (c == NULL)
@@ -105,7 +87,7 @@ static size_t batch_at(const ted4_trainer *t, size_t at)
     const ted4_picture *pic = t->data->pictures;
     size_t n = 1;
 
-    while (n < (size_t)t->opt.batch && at + n < o->n - o->rest &&
+    while (n < (size_t)t->opt.batch && at + n < o->n &&
            pic[o->item[at + n]].frame == pic[o->item[at]].frame)
         n++;
     return n;
@@ -118,7 +100,7 @@ static void announce(const ted4_trainer *t)
     const ted4_order *o = &t->order;
     int left = TED4_DATASET_AHEAD;
 
-    for (size_t at = o->next; at < o->n - o->rest && left > 0;) {
+    for (size_t at = o->next; at < o->n && left > 0;) {
         const size_t n = batch_at(t, at);
         size_t first, end;
 
@@ -133,12 +115,11 @@ int ted4_next_pictures(ted4_trainer *t, const uint32_t **item, size_t *n)
 {
     ted4_order *o = &t->order;
 
-    if (o->next >= o->n - o->rest) {
-        o->rest = put_to_rest(t);
-        if (t->opt.batch > 1 && shuffle_batches(t, o->n - o->rest) != 0)
+    if (o->next >= o->n) {
+        if (t->opt.batch > 1 && shuffle_batches(t) != 0)
             return -1;
         if (t->opt.batch == 1)
-            shuffle(o, o->n - o->rest);
+            shuffle(o);
         o->round++;
         o->next = 0;
     }

@@ -300,13 +300,6 @@ static void clear_moments(ted4_trainer *t)
     memset(t->net.v, 0, t->layout.n_net * sizeof *t->net.v);
 }
 
-/* All pictures take part again, and the judge forgets what it knows of the previous phase. */
-static void end_rest(ted4_trainer *t)
-{
-    t->judge.state.resting = t->judge.state.n = 0;
-    memset(t->judge.state.level, 0, sizeof t->judge.state.level);
-}
-
 int ted4_stage2_begin(ted4_trainer *t)
 {
     if (settle_positions(t) != 0 || ted4_stage_drop_dead(t) != 0 || reshape(t) != 0)
@@ -323,7 +316,6 @@ int ted4_stage2_begin(ted4_trainer *t)
     t->phase.stage2 = 1;
     t->phase.rate_norm_header = t->layout.head;
     t->phase.stage2_start = t->iteration;
-    end_rest(t);
     return 0;
 }
 
@@ -360,7 +352,6 @@ int ted4_integer_begin(ted4_trainer *t)
     ted4_weight_grid_scene(&t->layout.shape, t->net.bits, t->net.value + t->layout.netr,
                            t->net.value + t->layout.bank);
     t->phase.integer = 1;
-    end_rest(t);
     ted4_rate_pack(t->work.rate, t->net.value);
     return ted4_integer_rate(t, NULL);
 }

@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "stage_judge.h"
 #include "train/densify/camera_colour_init.h"
 #include "train/densify/camera_exposure_init.h"
 #include "train/densify/short_lived.h"
@@ -81,8 +80,7 @@ static int begin(ted4_trainer *t, const ted4_header *h)
     t->phase.rate_norm_header = t->layout.head;
     ted4_weight_grid_full(t->net.bits);
     t->monitor.state.factor = 1;
-    if (ted4_trainer_rebuild(t) != 0 || make_order(t) != 0 || ted4_judge_init(t) != 0 ||
-        make_images(t) != 0)
+    if (ted4_trainer_rebuild(t) != 0 || make_order(t) != 0 || make_images(t) != 0)
         return -1;
     if (ted4_anchors_init(&t->anchors, &t->layout) != 0 ||
         ted4_init_anchors(&t->anchors, &t->layout, t->data, &t->opt, &t->voxel) != 0)
