@@ -20,7 +20,11 @@ test-mpi: $B/ted4enc $B/ted4scene $(shell pkg-config --exists ompi-c && echo $B/
         $(RANKS_TEST)
 	@TED4_BUILD=$(abspath $B) sh tests/run.sh $(RANKS_TEST)
 
+# The time of a step by two ranks against one, for a quiet machine of two cores: some minutes.
+bench-mpi: $B/ted4enc $B/ted4enc-mpi
+	TED4_BUILD=$B bench/cluster/step_time.sh
+
 deps-mpi: deps
 	@$(call INSTALL_DEBIAN,$(DEPS_MPI))
 
-.PHONY: mpi test-mpi deps-mpi
+.PHONY: mpi test-mpi bench-mpi deps-mpi

@@ -6,6 +6,7 @@
 #include <math.h>
 
 #include "math/lane_sum.h"
+#include "train/state/block_exchange.h"
 
 /* The channels of a term in the anchors' values: the first one, and their number. */
 typedef struct {
@@ -179,6 +180,8 @@ int64_t ted4_gradients_anchor(const ted4_trainer *t, int term, int *finite)
     largest best = { 0, -1, 1 };
     range r[TED4_NETS_R];
 
+    if (term == TED4_TERM_CENTRE && ted4_blocks_shared(t))
+        ted4_block_share_centres(t);
     if (term < TED4_BLOCK_TERMS)
         search_values(t, term, &best);
     else if (term == TED4_TERM_CENTRE)

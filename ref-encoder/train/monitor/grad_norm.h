@@ -24,7 +24,8 @@ void ted4_gradients_gather(const ted4_trainer *t, double *norm);
 int64_t ted4_gradients_bad_seen(const ted4_trainer *t, int *term);
 
 /* Returns the anchor with a gradient that is not finite, or else the one with the largest
- * gradient, or -1 if the term has no anchors. *finite: 1 if all gradients are finite. */
+ * gradient, or -1 if the term has no anchors. *finite: 1 if all gradients are finite. All ranks
+ * have to call it (exchange.h). */
 int64_t ted4_gradients_anchor(const ted4_trainer *t, int term, int *finite);
 /* Returns the first of all anchors with a value that is not finite, or -1 if there is none. *term:
  * the attribute, TED4_TERM_MASK, or TED4_TERM_CENTRE for the position. */

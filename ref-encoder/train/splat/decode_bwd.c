@@ -315,10 +315,11 @@ static void weights_backward(const ted4_gen_job *t, int net, size_t from, size_t
     }
 }
 
-void TED4_LEVELED(ted4_gen_backward)(void *arg, size_t chunk)
+void TED4_LEVELED(ted4_gen_backward)(void *arg, size_t k)
 {
     const ted4_gen_job *t = arg;
     ted4_generator *g = t->g;
+    const size_t chunk = t->first + k;
     const size_t first = ted4_gen_first(t->in->n_visible, chunk);
     const size_t n = ted4_gen_first(t->in->n_visible, chunk + 1) - first;
     const size_t n_groups = (n + TED4_GEN_GROUP - 1) / TED4_GEN_GROUP;
@@ -347,7 +348,6 @@ void TED4_LEVELED(ted4_gen_sum_range)(void *arg, size_t range)
     ted4_generator *g = t->g;
     const size_t from = g->n_grad * range / TED4_GEN_CHUNKS;
     const size_t to = g->n_grad * (range + 1) / TED4_GEN_CHUNKS;
-    float *d_tail = t->d_net + g->layout.netr + g->net_tail;
     float *sum = g->grad;
 
     for (int c = 1; c < TED4_GEN_CHUNKS; c++) {
@@ -356,11 +356,5 @@ void TED4_LEVELED(ted4_gen_sum_range)(void *arg, size_t range)
 #pragma omp simd
         for (size_t i = from; i < to; i++)
             sum[i] += grad[i];
-    }
-    for (size_t i = from; i < to; i++) {
-        if (i < g->n_effective)
-            g->motion.d_w[i] = sum[i];
-        else
-            d_tail[i - g->n_effective] += sum[i];
     }
 }

@@ -8,10 +8,9 @@
 
 #include "generator.h"
 
-/* Work is split into this many chunks of visible blocks for any number of threads, so that sums
- * over visible blocks have a fixed order. Within a chunk, weight gradients are computed over groups
- * of visible blocks, small enough to stay in the second-level cache. */
-enum { TED4_GEN_CHUNKS = 32, TED4_GEN_GROUP = 8 };
+/* Within a chunk, weight gradients are computed over groups of so many visible blocks, small enough
+ * to stay in the second-level cache. */
+enum { TED4_GEN_GROUP = 8 };
 
 /* Motion type inr, spec 11.3: numbers of inputs derived from the position and from the time. */
 enum {
@@ -103,8 +102,8 @@ typedef struct {
     const ted4_generate_input *in;
     const ted4_splat_grads *gr;
     float *const *d_attr;
-    float *d_net;
     float *view_sum; /* colours of one of several views: their gradients */
+    size_t first;    /* backward pass: the chunk of job 0 */
 } ted4_gen_job;
 
 /* Returns n floats, 64-byte aligned, or NULL if memory ran out. Free with free(). */
@@ -124,9 +123,9 @@ void ted4_gen_encode_points(const float *position, float *to);
 
 /* job is a ted4_gen_job. decode_fwd.c: ted4_gen_forward processes one visible block. decode_bwd.c:
  * ted4_gen_backward processes the visible blocks of a chunk; ted4_gen_sum_range, after all chunks,
- * sums a range of the gradients. */
+ * sums a range of the gradients into the array of chunk 0. */
 TED4_EACH_LEVEL(void, ted4_gen_forward, void *job, size_t visible);
-TED4_EACH_LEVEL(void, ted4_gen_backward, void *job, size_t chunk);
+TED4_EACH_LEVEL(void, ted4_gen_backward, void *job, size_t k);
 TED4_EACH_LEVEL(void, ted4_gen_sum_range, void *job, size_t range);
 
 /* view_colours.c: the same for the colours of one of several views. */

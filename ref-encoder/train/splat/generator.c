@@ -106,17 +106,49 @@ static void add_colour_head(const ted4_generator *g, const ted4_generate_input *
         to[i] += sum[i];
 }
 
+size_t ted4_generate_first(size_t n_visible, size_t chunk)
+{
+    return ted4_gen_first(n_visible, chunk);
+}
+
+void ted4_generate_backward_chunks(ted4_generator *g, const ted4_generate_input *in,
+                                   const ted4_splat_grads *gr, const ted4_parallel *p,
+                                   float *const *d_attr, size_t from, size_t to)
+{
+    ted4_gen_job t = { .g = g, .in = in, .gr = gr, .d_attr = d_attr, .first = from };
+
+    ted4_parallel_for(p, to - from, TED4_IN_USE(ted4_gen_backward), &t);
+}
+
+float *ted4_generate_chunk_gradients(ted4_generator *g, size_t *size)
+{
+    *size = g->n_grad;
+    return g->grad;
+}
+
+void ted4_generate_backward_end(ted4_generator *g, const ted4_generate_input *in, float *d_net)
+{
+    const float *sum = g->grad;
+    float *tail = d_net + g->layout.netr + g->net_tail;
+
+    for (size_t i = 0; i < g->n_effective; i++)
+        g->motion.d_w[i] = sum[i];
+    for (size_t i = g->n_effective; i < g->n_grad; i++)
+        tail[i - g->n_effective] += sum[i];
+    if (in->by_view)
+        add_colour_head(g, in, d_net);
+    TED4_IN_USE(ted4_gen_motion_backward)(g, in->net, d_net);
+}
+
 int ted4_generate_backward(ted4_generator *g, const ted4_generate_input *in,
                            const ted4_splat_grads *gr, const ted4_parallel *p, float *const *d_attr,
                            float *d_net)
 {
-    ted4_gen_job t = { g, in, gr, d_attr, d_net, NULL };
+    ted4_gen_job t = { .g = g };
 
-    ted4_parallel_for(p, TED4_GEN_CHUNKS, TED4_IN_USE(ted4_gen_backward), &t);
+    ted4_generate_backward_chunks(g, in, gr, p, d_attr, 0, TED4_GEN_CHUNKS);
     ted4_parallel_for(p, TED4_GEN_CHUNKS, TED4_IN_USE(ted4_gen_sum_range), &t);
-    if (in->by_view)
-        add_colour_head(g, in, d_net);
-    TED4_IN_USE(ted4_gen_motion_backward)(g, in->net, d_net);
+    ted4_generate_backward_end(g, in, d_net);
     add_cameras(g);
     return 0;
 }
@@ -138,6 +170,11 @@ void ted4_generate_view(ted4_generator *g, const ted4_generate_input *in, const 
 size_t ted4_generate_view_size(const ted4_generator *g, size_t n_visible)
 {
     return n_visible * ted4_gen_view_row(g) + ted4_gen_colour_weights(g);
+}
+
+size_t ted4_generate_view_row(const ted4_generator *g)
+{
+    return ted4_gen_view_row(g);
 }
 
 void ted4_generate_view_backward(ted4_generator *g, const ted4_generate_input *in,

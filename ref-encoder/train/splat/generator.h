@@ -8,6 +8,10 @@
 #include "train/model/model.h"
 #include "train/model/splat_grads.h"
 
+/* Work is split into this many chunks of visible blocks for any number of threads and of processes,
+ * so that sums over visible blocks have a fixed order. */
+enum { TED4_GEN_CHUNKS = 32 };
+
 /* One query over chosen blocks, usually the visible ones. Lane j of offset k of visible block i is
  * splat (i K + k) 32 + j. */
 typedef struct {
@@ -48,6 +52,17 @@ int ted4_generate(ted4_generator *g, const ted4_generate_input *in, const ted4_p
 int ted4_generate_backward(ted4_generator *g, const ted4_generate_input *in,
                            const ted4_splat_grads *gr, const ted4_parallel *p, float *const *d_attr,
                            float *d_net);
+/* The same in parts, for processes of which each has some chunks. Blocks of chunk c: from
+ * ted4_generate_first(n_visible, c) to that of c + 1. */
+size_t ted4_generate_first(size_t n_visible, size_t chunk);
+/* Fills d_attr of the blocks of chunks from to to - 1; of gr it reads these blocks alone. */
+void ted4_generate_backward_chunks(ted4_generator *g, const ted4_generate_input *in,
+                                   const ted4_splat_grads *gr, const ted4_parallel *p,
+                                   float *const *d_attr, size_t from, size_t to);
+/* Returns the gradients of networks by chunk, [TED4_GEN_CHUNKS][*size], borrowed. */
+float *ted4_generate_chunk_gradients(ted4_generator *g, size_t *size);
+/* Adds to d_net, once the array of chunk 0 has the sum over all chunks, in their order. */
+void ted4_generate_backward_end(ted4_generator *g, const ted4_generate_input *in, float *d_net);
 /* Returns the gradient [3] of in->camera from the last ted4_generate_backward, or with by_view from
  * the last ted4_generate_view_backward: zero if nothing depends on the viewing direction. */
 const float *ted4_generate_camera_gradient(const ted4_generator *g);
@@ -57,8 +72,11 @@ const float *ted4_generate_camera_gradient(const ted4_generator *g);
  * receives both, valid until the next call. */
 void ted4_generate_view(ted4_generator *g, const ted4_generate_input *in, const ted4_parallel *p,
                         ted4_splats *out);
-/* Returns the floats of the gradients behind colours, for n visible blocks. */
+/* Returns the floats of the gradients behind colours, for n visible blocks: first those of the
+ * features of each block, then those of the colour head. */
 size_t ted4_generate_view_size(const ted4_generator *g, size_t n_visible);
+/* Returns how many of them belong to one block. */
+size_t ted4_generate_view_row(const ted4_generator *g);
 /* After ted4_generate_view with the same input: from the gradients of colours to those of features
  * and of the colour head, sum[ted4_generate_view_size], overwritten. */
 void ted4_generate_view_backward(ted4_generator *g, const ted4_generate_input *in,

@@ -48,11 +48,19 @@ static int waiting(size_t n)
     return count;
 }
 
+static void free_nodes(ted4_view_sums *s)
+{
+    for (int k = 0; k < TED4_VIEW_LEVELS; k++) {
+        free(s->node[k]);
+        s->node[k] = NULL;
+    }
+}
+
 int ted4_view_sums_begin(ted4_view_sums *s, size_t size, size_t n)
 {
     s->n_views = 0;
     if (size > s->capacity) {
-        ted4_view_sums_finish(s);
+        free_nodes(s);
         s->capacity = size + size / 4;
     }
     s->size = size;
@@ -67,8 +75,7 @@ int ted4_view_sums_begin(ted4_view_sums *s, size_t size, size_t n)
 
 void ted4_view_sums_finish(ted4_view_sums *s)
 {
-    for (int k = 0; k < TED4_VIEW_LEVELS; k++)
-        free(s->node[k]);
+    free_nodes(s);
     free(s->received);
     memset(s, 0, sizeof *s);
 }

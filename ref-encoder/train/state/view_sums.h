@@ -21,7 +21,8 @@ typedef struct {
     float *node[TED4_VIEW_LEVELS]; /* owned, [capacity] */
     size_t size, capacity;         /* floats of a node */
     size_t n_views;                /* added so far */
-    float *received;               /* owned by view_exchange.h; NULL: nothing was received yet */
+    float *received; /* owned, [received_capacity]: of view_exchange.h; NULL: nothing yet */
+    size_t received_capacity;
 } ted4_view_sums;
 
 /* Begins a sum of arrays of size floats over n views, 1 to TED4_MAX_VIEWS. Returns 0, or -1 if

@@ -35,7 +35,8 @@ static int compare_cards(const void *x, const void *y)
 }
 
 /* Divides c[n], sorted by time, into batches of at most `most` pictures, of sizes as equal as
- * possible, and gives each a random place. */
+ * possible, and gives each a random place. If most is even, so are all sizes of a time but one, for
+ * two processes to share them equally. */
 static void make_batches(const ted4_order *o, card *c, uint32_t n, uint32_t most)
 {
     uint64_t batch = 0;
@@ -45,9 +46,11 @@ static void make_batches(const ted4_order *o, card *c, uint32_t n, uint32_t most
             to++;
 
         const uint32_t count = to - from, parts = (count + most - 1) / most;
+        const uint32_t unit = 2 - most % 2, units = (count + unit - 1) / unit;
 
         for (uint32_t part = 0; part < parts; part++, batch++)
-            for (uint32_t i = count * part / parts; i < count * (part + 1) / parts; i++)
+            for (uint32_t i = unit * (units * part / parts);
+                 i < unit * (units * (part + 1) / parts) && i < count; i++)
                 c[from + i].minor = ted4_random(~o->key, o->round << 32 | batch);
     }
     for (uint32_t i = 0; i < n; i++) {
