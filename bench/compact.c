@@ -45,7 +45,7 @@ static void put_positions(const file *f)
     char name[64];
     size_t shared;
 
-    for (unsigned depth = 8; depth <= 14; depth++) {
+    for (unsigned depth = 8; depth <= 12; depth++) {
         const double bits = compact_octree(s, depth, &shared);
 
         snprintf(name, sizeof name, "positions: octree, %u bits, %zu shared", depth, shared);

@@ -28,6 +28,7 @@ double compact_octree(const ted4_scene *s, unsigned depth, size_t *shared)
 {
     const size_t n = s->head.n_anchors;
     uint64_t *const key = compact_need(n, sizeof *key);
+    uint16_t *const position = compact_need(3 * n, sizeof *position);
     compact_counter c = { .base = { .ops = &compact_counter_ops } };
     size_t n_keys = 0;
 
@@ -39,9 +40,12 @@ double compact_octree(const ted4_scene *s, unsigned depth, size_t *shared)
     for (size_t i = 0; i < n; i++)
         if (i == 0 || key[i] != key[n_keys - 1])
             key[n_keys++] = key[i];
-    ted4_octree_walk(&c.base, depth, n_keys, key);
+    for (size_t i = 0; i < 3 * n_keys; i++)
+        position[i] = ted4_grid_half(ted4_gather3(key[i / 3] >> (2 - i % 3)), depth);
+    ted4_octree_walk(&c.base, depth, n_keys, position);
     *shared = n - n_keys;
     free(key);
+    free(position);
     return c.bits;
 }
 

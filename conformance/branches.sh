@@ -2,7 +2,6 @@
 # Branch outcomes of norm/ and read/ by gcov, both of every condition, as a table: file, function,
 # line, number of the outcome (gcov's) on that line, 1 if it was taken, the line's text. Needs a
 # build with --coverage that something has run in. What becomes of the table: branches.awk.
-# Left out are the coders of annex N, a draft: no decoder uses them, so that no vector reaches them.
 #     conformance/branches.sh BUILD >TABLE
 # SPDX-License-Identifier: BSD-2-Clause
 export LC_ALL=C
@@ -10,7 +9,6 @@ build=$1
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 for o in "$build"/ref-decoder/norm/*.o "$build"/ref-decoder/read/*.o; do
-    case ${o##*/} in octree.o|coded_*.o) continue ;; esac
     gcov -t -b -c -o "$(dirname "$o")" "$o" 2>/dev/null
 done >"$work/all"
 awk '

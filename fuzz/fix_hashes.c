@@ -71,7 +71,7 @@ size_t ted4_plain_file(uint8_t *to, const uint8_t *from, size_t size)
     size_t n = TED4_FILE_HEADER_SIZE;
 
     memcpy(to, from, n);
-    to[9] = 0;
+    to[9] = from[10] == TED4_PROFILE_MAIN ? 0 : 2;
     for (size_t at = n, whole; at < size; at += whole) {
         whole = ted4_chunk_size(from, size, at);
         if (!(ted4_load32(from + at + 4) & TED4_FLAG_CRITICAL))

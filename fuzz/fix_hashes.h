@@ -19,8 +19,8 @@ void ted4_fix_rans_ends(uint8_t *data, size_t size);
  * max_size. */
 size_t ted4_fix_range_codes(uint8_t *data, size_t size, size_t max_size);
 
-/* Writes the part of a valid file that a writer knows: its critical chunks, minor version 0. to:
- * room for size bytes. Returns the number of bytes written. */
+/* Writes the part of a valid file that a writer knows: its critical chunks, and the lowest minor
+ * version. to: room for size bytes. Returns the number of bytes written. */
 size_t ted4_plain_file(uint8_t *to, const uint8_t *from, size_t size);
 
 /* Returns the bytes of the chunk at an offset, including its hash, or 0 if it does not fit. */

@@ -39,10 +39,11 @@ static int soon(const uint8_t *data, size_t size)
     ted4_shape shape;
     uint64_t n;
     int before = -1;
+    uint8_t profile = 0;
 
     memset(&h, 0, sizeof h);
     ted4_reader_init(&r, data, 0, size, 1);
-    (void)ted4_container_header(&r);
+    (void)ted4_container_header(&r, &profile);
     p = ted4_container_judge(&r, &before);
     if (r.base.error.code != TED4_OK)
         return 1;

@@ -132,9 +132,11 @@ static ted4_reader reader_of(parser *p, const ted4_chunk_place *place)
 static int blob(parser *p, ted4_blob *b, uint64_t n, size_t left)
 {
     b->n = n;
-    if (left == 0 || ((left - 1) / 4 < n && ted4_inflate_impossible(left - 1, n)))
+    if (left == 0 || ((left - 1) / 4 < n && ted4_inflate_impossible(left - 1, n) &&
+                      (p->s->profile == TED4_PROFILE_MAIN || left - 1 < ted4_rest_least(n))))
         return 0;
-    return ted4_blob_alloc(p->s, b, n);
+    b->exponent = ted4_arena_alloc(&p->s->arena, n, 1);
+    return b->exponent != NULL && ted4_blob_alloc(p->s, b, n);
 }
 
 static void nete(parser *p, ted4_reader *r)
@@ -155,12 +157,16 @@ static void values(parser *p, ted4_reader *r, ted4_blob *b, uint64_t n)
     if (!blob(p, b, n, r->end - r->base.pos))
         ted4_fail(&r->base.error, TED4_E_LIMIT_MEMORY, r->base.pos);
     else
-        ted4_walk_blob(&r->base, "value", b);
+        ted4_walk_blob(&r->base, "value", p->s, b);
 }
 
 static void positions(parser *p, ted4_reader *r)
 {
-    if (p->s->bank.n != p->s->shape.n_bank || (r->end - r->base.pos) / 6 < p->s->head.n_anchors ||
+    const size_t bytes = r->end - r->base.pos;
+    const uint32_t n = p->s->head.n_anchors;
+
+    if (p->s->bank.n != p->s->shape.n_bank ||
+        (p->s->profile == TED4_PROFILE_MAIN ? bytes / 6 < n : bytes <= ted4_rest_least(n)) ||
         !ted4_scene_alloc_anchors(p->s) ||
         (p->work = ted4_arena_alloc(&p->s->arena, 1, ted4_tile_work_size(p->s))) == NULL)
         ted4_fail(&r->base.error, TED4_E_LIMIT_MEMORY, r->base.pos);
@@ -172,7 +178,7 @@ static void tile(parser *p, ted4_reader *r)
 {
     const ted4_coder_ops any = { any_number, r->base.ops->array, r->base.ops->deflated,
                                  any_sizes,  any_open,           any_close,
-                                 any_bit,    any_gauss };
+                                 any_bit,    any_gauss,          r->base.ops->rest };
 
     if (p->work == NULL || p->n_tiles == p->s->shape.n_tiles) {
         ted4_fail(&r->base.error, TED4_E_CON_CHUNK_ORDER, r->base.pos);
@@ -213,7 +219,7 @@ static int chunks(parser *p, size_t *ends)
     ted4_coder *c = &p->file.base;
 
     c->pos = 0;
-    ted4_walk_file_header(c, &p->s->level);
+    ted4_walk_file_header(c, 0, &p->s->profile, &p->s->level);
     while (c->error.code == TED4_OK && c->pos < p->file.end) {
         const ted4_chunk_place place = ted4_container_next(&p->file);
 

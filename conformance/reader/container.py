@@ -45,7 +45,7 @@ def file_header(data):
     require(len(data) > 8, "con.truncated", len(data))
     require(data[8] == 1, "con.version", 8)
     require(len(data) > 10, "con.truncated", len(data))                 # any minor
-    require(data[10] == 0, "unsupported.profile", 10)
+    require(data[10] <= 1, "unsupported.profile", 10)
     require(len(data) > 11, "con.truncated", len(data))
     require(data[11] in LEVELS, "con.level", 11)
     require(len(data) <= LEVELS[data[11]].file_bytes, "lvl.exceeded", 11)

@@ -33,6 +33,7 @@ class Model:
         self.data = data
         self.tiles, self.spans, self.bank = [], [], []
         level, self.chunks = pass_one(data)
+        self.compact = data[10] == 1
         head = Payload(data, self.chunks[0].begin, self.chunks[0].end)
         self.header = h = read_header(head, level, len(data))
         check_work(h, len(data), max_work)
@@ -43,7 +44,7 @@ class Model:
                 "POSN": self.read_posn, "TILE": self.read_tile,
                 "ENDS": self.read_ends}
         for chunk in walk_chunks(self.chunks[1:], h.phi_dim > 0, h.n_tiles):
-            payload = Payload(data, chunk.begin, chunk.end)
+            payload = Payload(data, chunk.begin, chunk.end, self.compact)
             read.get(chunk.type, skip)(payload)
             payload.finish()
             self.spans.append(payload.spans)
@@ -54,7 +55,10 @@ class Model:
     def read_netr(self, payload):
         """7.4."""
         shapes = tier_r_shapes(self.header)
-        values = iter(read_values(payload, "netr", values_of(shape for _, shape in shapes)))
+        groups = [[(inputs, None)] * outputs + [(outputs, None)]
+                  for _, shape in shapes for inputs, outputs in layers(shape)]
+        values = iter(read_values(payload, "netr", values_of(shape for _, shape in shapes),
+                                  groups))
         self.networks = {}
         for name, shape in shapes:
             self.networks[name] = [([take(values, inputs) for _ in range(outputs)],
@@ -63,7 +67,8 @@ class Model:
     def read_bank(self, payload):
         """7.5."""
         h = self.header
-        values = iter(read_values(payload, "bank", h.bank_rows * h.bank_dim))
+        n = h.bank_rows * h.bank_dim
+        values = iter(read_values(payload, "bank", n, [[(n, None)]]))
         self.bank = [take(values, h.bank_dim) for _ in range(h.bank_rows)]
 
     def read_posn(self, payload):
@@ -100,7 +105,7 @@ def take(values, n):
     return [next(values) for _ in range(n)]
 
 
-def read_values(payload, name, count):
-    blob = Blob(payload, name, count)
+def read_values(payload, name, count, groups):
+    blob = Blob(payload, name, count, groups)
     blob.check_values()
     return f32_values(blob.patterns)

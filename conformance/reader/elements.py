@@ -21,8 +21,9 @@ number_names(32, "n_anchors tile_size n_offsets feature_dim motion phi_dim bank_
                  "head_width scale_domain prior pe_octaves hyper_layers hyper_width n_slices slice "
                  "ar_width context_bits step frames rate_num rate_den origin exponent background "
                  "reserved")
-number_names(96, "shift mode nete nete_deflated netr netr_deflated bank bank_deflated")
-number_names(112, "position")
+number_names(96, "shift mode nete nete_deflated netr netr_deflated bank bank_deflated "
+                 "unit_exponent weights_substream")
+number_names(112, "position grid tree_substream")
 number_names(128, "tile_index dynamic_prob offset_prob size mask_substream feature_substream "
                   "scaling_substream offset_substream phi_substream tau_substream")
 number_names(160, "ends_hash")
@@ -32,11 +33,11 @@ class Payload:
     """The elements of one chunk's payload, taken in order; `spans` keeps what was taken, for T0.
 
     A span is (name, width, count, offset): count numbers of width bytes, or, with width 0, count
-    bytes as one element.
+    bytes as one element. `compact`: the profile.
     """
 
-    def __init__(self, data, start, end):
-        self.data, self.at, self.end = data, start, end
+    def __init__(self, data, start, end, compact=False):
+        self.data, self.at, self.end, self.compact = data, start, end, compact
         self.spans = []
 
     def number(self, name, width):

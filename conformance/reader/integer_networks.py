@@ -75,11 +75,21 @@ def read_networks(payload, h):
         require(s <= 20, "net.shift", offset)                                           # R-NET-003
         require(s + unit["f"] - unit["g"] >= 0, "net.shift", offset)                    # R-NET-005
         shifts.append(s)
-    reader = LayerReader(shifts, Blob(payload, "nete",
-                                      sum((p["inputs"] + 1) * p["outputs"] for network in plans
-                                          for p in network)))
+    count = sum((p["inputs"] + 1) * p["outputs"] for network in plans for p in network)
+    reader = LayerReader(shifts, Blob(payload, "nete", count, list(coded_units(plans, shifts))))
     networks = [Network([reader.layer(p) for p in network]) for network in plans]
     return networks[0], networks[1:]
+
+
+def coded_units(plans, shifts):
+    """7.6: the units of mode 2: for each layer those of its weights, then those of its biases, with
+    contexts of their own."""
+    unit = 0
+    for p in (p for network in plans for p in network):
+        mine = shifts[unit:unit + p["outputs"]]
+        unit += p["outputs"]
+        yield [(p["inputs"], -s) for s in mine]
+        yield [(1, -(s + p["f"])) for s in mine]
 
 
 def plan(shape, bits, amplitude):

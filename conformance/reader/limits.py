@@ -22,12 +22,12 @@ def check_memory(h, file_bytes, bound):
     """limit.memory when M_E is above `bound`, or, without one, when decoding in Python may need
     more than DEFAULT bytes. What a file claims beyond what its bytes could hold is not counted
     there: a deflated value takes at least 1/258 byte (RFC 1951: 258 bytes in two bits, four bytes a
-    value), an anchor 6 bytes of POSN."""
+    value), an anchor 1/8 byte of POSN."""
     if bound is not None:
         require(memory_of_tier_e(h, file_bytes) <= bound, "limit.memory", None)
         return
     values = min(blob_values(h), 258 * file_bytes)
-    anchors = min(h.n_anchors, file_bytes // 6)
+    anchors = min(h.n_anchors, 8 * file_bytes)
     symbols = anchors * sum(dim for _, dim in h.types)
     need = PER_VALUE * values + PER_SYMBOL * symbols + PER_BYTE * file_bytes
     require(need <= DEFAULT, "limit.memory", None)

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: BSD-2-Clause
 """POSN (chapter 8), judged anchor after anchor (R-POS-003)."""
 
+import struct
+
+from adaptive import Rest, decode_tree
 from floats import f16_sound, f16_values
 from verdict import require
 
@@ -32,6 +35,15 @@ class Positions:
     integers."""
 
     def __init__(self, payload, n):
+        if payload.compact:
+            self.patterns = read_tree(payload, n)
+        else:
+            self.read_array(payload, n)
+        self.values = f16_values(self.patterns)
+        self.fixed = [int(v * 16777216.0) for v in self.values]
+
+    def read_array(self, payload, n):
+        """8.1."""
         start = payload.at
         self.patterns = payload.numbers("position", 2, 3 * n)
         last = -1
@@ -43,5 +55,29 @@ class Positions:
             code = morton(anchor)
             require(code > last, "pos.order", start + 2 * i)                            # R-POS-002
             last = code
-        self.values = f16_values(self.patterns)
-        self.fixed = [int(v * 16777216.0) for v in self.values]
+
+
+def read_tree(payload, n):
+    """8.2: the patterns of 3 N coordinates."""
+    start = payload.at
+    depth = payload.number("grid", 1)
+    require(depth in (6, 7, 8, 9, 10, 11, 12, 16), "pos.grid", start)                   # R-POS-004
+    rest = Rest(payload, "tree_substream", n)
+    keys = decode_tree(rest, depth, n)
+    rest.finish()
+    patterns = [coordinate(place_of(key, depth, 2 - j), depth) for key in keys for j in range(3)]
+    for pattern in patterns:
+        require(f16_sound(pattern), "pos.value", rest.start)                            # R-POS-001
+        require(pattern & 0x7FFF <= 0x3C00, "pos.range", rest.start)
+    return patterns
+
+
+def place_of(key, depth, shift):
+    return sum((key >> 3 * i + shift & 1) << i for i in range(depth))
+
+
+def coordinate(place, depth):
+    """The f16 pattern of a place."""
+    if depth == 16:
+        return place - 0x8000 if place >= 0x8000 else 0xFFFF - place
+    return struct.unpack("<H", struct.pack("<e", place / 2.0 ** (depth - 1) - 1))[0]

@@ -26,6 +26,7 @@
  *                                          file itself does not change
  *     do pack REF WAY FAULT                packs the blob's values again, with a fault
  *     do blocks REF WORD...                packs them in blocks that the words spell out: blocks.h
+ *     do tree GRID X:Y:Z ...; do pack REF coded       see break_coded.h
  *     do pack-zeros REF N                  packs a blob of N bytes of zeros
  *     do inject TILE SUB SYMBOL value K | escape E low|high | ones N      see inject.h
  *     do symbol TYPE COMP ANCHOR K         sets a symbol that contradicts another one
@@ -37,6 +38,7 @@
 #include <string.h>
 #include "base/bytes.h"
 #include "blocks.h"
+#include "break_coded.h"
 #include "inject.h"
 #include "norm/coder.h"
 #include "pack.h"
@@ -224,6 +226,11 @@ static void set_bias(conf_stream *s, const conf_line *l)
     ted4_store32(p->data + s->build->scene->shape.n_units + 1 + 4 * index, ted4_float_bits(v));
 }
 
+static void tree(conf_stream *s, const conf_line *l)
+{
+    conf_coded_tree(&s->chunk[conf_stream_chunk(s, l, "POSN")].payload, l);
+}
+
 static void copy_position(conf_stream *s, const conf_line *l)
 {
     uint8_t *const p = s->chunk[conf_stream_chunk(s, l, "POSN")].payload.data;
@@ -361,10 +368,14 @@ static void pack(conf_stream *s, const conf_build *b, const conf_line *l)
     const int spelt = conf_word_is(l, 1, "blocks");
     const int way = !spelt && l->n > 3 ? conf_pack_way_of(l->word[3]) : -1,
               fault = !spelt && l->n > 4 ? conf_pack_fault_of(l->word[4]) : -1;
-    const ted4_blob *blob = blob_of(b, l);
+    ted4_blob *blob = blob_of(b, l);
     const size_t head = conf_word_is(l, 2, "NETE") ? b->scene->shape.n_units : 0;
     uint8_t *bytes;
 
+    if (l->n == 4 && conf_word_is(l, 3, "coded")) {
+        conf_coded_blob(p, head, b->scene, blob, l);
+        return;
+    }
     if (!spelt && (way < 0 || fault < 0))
         conf_line_bad(l, "pack REF WAY FAULT");
     bytes = conf_alloc(blob->n, 4);
@@ -442,6 +453,7 @@ static int plain_line(conf_stream *s, const conf_line *l, const char *what)
         { "tail", tail },
         { "set-bias", set_bias },
         { "copy-position", copy_position },
+        { "tree", tree },
         { "pack-zeros", pack_zeros },
     };
 

@@ -1,10 +1,11 @@
-/* build_pack.c - `pack nete|netr|bank raw | fixed | dynamic | mixed | small`: sets the modes of the
- * blobs. A blob without such a line is raw.
+/* build_pack.c - `pack nete|netr|bank raw | fixed | dynamic | mixed | small | coded`: sets the
+ * modes of the blobs. A blob without such a line is raw.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdlib.h>
 #include <string.h>
 #include "build.h"
 #include "pack.h"
+#include "write/coded.h"
 
 static void pack(conf_build *b, const conf_line *l, ted4_blob *blob)
 {
@@ -12,6 +13,9 @@ static void pack(conf_build *b, const conf_line *l, ted4_blob *blob)
     uint8_t *bytes;
     conf_bytes out = { NULL, 0, 0 };
 
+    if (l->n > 2 && conf_word_is(l, 2, "coded") &&
+        !ted4_blob_code(b->scene, blob, &b->scene->arena, SIZE_MAX))
+        conf_line_bad(l, "values that mode 2 does not have");
     if (way < 0)
         return;
     bytes = conf_alloc(blob->n, 4);

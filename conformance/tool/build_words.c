@@ -39,10 +39,10 @@ int conf_word_type(const conf_line *l, int i)
 
 int conf_is_scene_line(const conf_line *l)
 {
-    static const char *const name[] = { "set",     "seed", "level",     "nete",
-                                        "unit",    "out",  "value",     "netr",
-                                        "bank",    "pack", "positions", "dynamic",
-                                        "offsets", "prob", "symbols",   "symbol" };
+    static const char *const name[] = { "set",       "seed",    "level",   "nete", "unit",
+                                        "out",       "value",   "netr",    "bank", "pack",
+                                        "positions", "dynamic", "offsets", "prob", "symbols",
+                                        "symbol",    "profile" };
 
     for (size_t i = 0; i < sizeof name / sizeof *name; i++)
         if (conf_word_is(l, 0, name[i]))

@@ -50,7 +50,9 @@ static const element table[] = { { "minor", 1, 0, 255, 1 },
                                  { "background", 1, 0, 255, 1 },
                                  { "reserved", 1, 0, 0, 0 },
                                  { "shift", 1, 0, 20, 1 },
-                                 { "mode", 1, 0, 1, 1 },
+                                 { "mode", 1, 0, 2, 1 },
+                                 { "profile", 1, 0, 1, 1 },
+                                 { "unit_exponent", 1, 0, 255, 1 },
                                  { "dynamic_prob", 2, 1, 65535, 1 },
                                  { "offset_prob", 2, 1, 65535, 1 } };
 
@@ -86,7 +88,15 @@ static void set_goals(conf_cover *c, const element *e)
         conf_goal(c, outside, "%s = %u", e->name, e->high + 1);
 }
 
-static const char *const special[] = { "exponent = -30",
+static const char *const special[] = { "grid = 6",
+                                       "grid = 7",
+                                       "grid = 8",
+                                       "grid = 9",
+                                       "grid = 10",
+                                       "grid = 11",
+                                       "grid = 12",
+                                       "grid = 16",
+                                       "exponent = -30",
                                        "exponent = -29",
                                        "exponent = 0",
                                        "exponent = 29",
@@ -188,6 +198,8 @@ static void note_special(observer *l, const char *name, int64_t value)
         reach_float(l, "value of a blob", (uint32_t)value);
     if (strcmp(name, "position") == 0)
         reach_position(l, (unsigned)value);
+    if (strcmp(name, "grid") == 0)
+        conf_reach(l->c, group, l->id, "grid = %d", (int)value);
     if (strcmp(name, "level") == 0)
         conf_reach(l->c, group, l->id, "level %d", (int)value);
     if (strcmp(name, "tile_index") == 0)

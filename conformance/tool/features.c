@@ -18,9 +18,9 @@ const char *const conf_feature_groups[][5] = {
     { "slices.one", "slices.many" },
     { "tile.single", "tile.multi" },
     { "frames.one", "frames.many" },
-    { "nete.raw", "nete.deflated" },
-    { "netr.raw", "netr.deflated" },
-    { "bank.none", "bank.raw", "bank.deflated" },
+    { "nete.raw", "nete.deflated", "nete.coded" },
+    { "netr.raw", "netr.deflated", "netr.coded" },
+    { "bank.none", "bank.raw", "bank.deflated", "bank.coded" },
 };
 
 const size_t conf_n_feature_groups = sizeof conf_feature_groups / sizeof *conf_feature_groups;
@@ -63,7 +63,8 @@ int conf_feature_excludes(const char *a, const char *b)
         { "motion.none", "bank.deflated" },    { "motion.inr", "bank.raw" },
         { "motion.inr", "bank.deflated" },     { "motion.bank", "bank.none" },
         { "motion.concat", "bank.none" },      { "prior.factorised", "hyper.hidden" },
-        { "prior.factorised", "pe.octaves" },
+        { "prior.factorised", "pe.octaves" },  { "motion.none", "bank.coded" },
+        { "motion.inr", "bank.coded" },
     };
 
     for (size_t i = 0; i < sizeof pair / sizeof *pair; i++)

@@ -216,6 +216,16 @@ static int is_of_pass_1(const json_t *expect)
            json_integer_value(json_object_get(expect, "offset")) == LEVEL_AT;
 }
 
+enum { PROFILE_AT = 10 };
+
+/* Returns whether a decoder has the profile; one that does not say has all. */
+static int has_profile(const json_t *capabilities, const char *profile)
+{
+    const json_t *const profiles = json_object_get(capabilities, "profiles");
+
+    return profiles == NULL || holds(profiles, profile);
+}
+
 void conf_judge(const json_t *capabilities, const json_t *d, const json_t *answer, conf_verdict *v)
 {
     const json_t *const expect = json_object_get(d, "expect");
@@ -227,6 +237,12 @@ void conf_judge(const json_t *capabilities, const json_t *d, const json_t *answe
 
     if (holds(json_object_get(expect, "also_ok"), got)) {
         say(v, CONF_PASS, "%s, which the specification allows too", got);
+        return;
+    }
+    if (strcmp(got, "unsupported") == 0 && !has_profile(capabilities, text_of(d, "profile")) &&
+        strcmp(text_of(answer, "error"), "unsupported.profile") == 0 &&
+        json_integer_value(json_object_get(answer, "offset")) == PROFILE_AT) {
+        say(v, CONF_DECLINED, "of a profile that the decoder does not have");
         return;
     }
     if (strcmp(want, "limit") != 0 && strcmp(got, "limit") == 0 && !is_of_pass_1(expect) &&

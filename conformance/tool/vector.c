@@ -258,8 +258,9 @@ int conf_vector_make(conf_vector *v, const conf_recipe *r, const char *suite)
     d = v->descriptor = json_pack("{s:s, s:i, s:s, s:s, s:I, s:s, s:s, s:s, s:i}", "id", r->id,
                                   "schema", 1, "category", v->folder, "file", name, "bytes",
                                   (json_int_t)v->file.size, "since", "1.0.0", "status", "active",
-                                  "profile", "Main", "level",
-                                  v->file.size > 11 ? v->file.data[11] : 0);
+                                  "profile",
+                                  v->file.size > 10 && v->file.data[10] == 1 ? "Compact" : "Main",
+                                  "level", v->file.size > 11 ? v->file.data[11] : 0);
     hashes(&v->file, d);
     json_object_set_new(d, "features", refused(r) ? json_array() : conf_features(b.scene));
     json_object_set_new(d, "rules", rules_of(r));

@@ -23,7 +23,7 @@ void ted4_code_weights(ted4_coder *c, ted4_integer_model *m, int exponent, float
 {
     unsigned before = 0, last = 0;
 
-    for (size_t i = 0; i < n; i++) {
+    for (size_t i = 0; i < n && c->error.code == TED4_OK; i++) {
         const unsigned expected = (before + last + 1) / 2;
         int32_t k = c->reads ? 0 : (int32_t)ted4_rne_scaled(ted4_float_bits(x[i]), -exponent);
 

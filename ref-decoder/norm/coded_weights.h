@@ -1,4 +1,4 @@
-/* coded_weights.h - annex N.4: codes the weights of a unit as integers times a power of two.
+/* coded_weights.h - spec 7.6: codes the weights of a unit as integers times a power of two.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_CODED_WEIGHTS_H
 #define TED4_CODED_WEIGHTS_H

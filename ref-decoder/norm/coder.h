@@ -33,6 +33,9 @@ typedef struct {
     /* spec 9.4: codes k[n], where symbol i has the Gaussian model with mu[i] (Q8) and the sigma
      * index sigma[i]. */
     void (*gauss)(ted4_coder *c, size_t n, const int32_t *mu, const uint8_t *sigma, int16_t *k);
+    /* spec 9.5: says that the next substream, which stands for n anchors or values, takes the rest
+     * of the payload. It is then opened with one symbol, as it has one lane. */
+    void (*rest)(ted4_coder *c, uint64_t n);
 } ted4_coder_ops;
 
 struct ted4_coder {
@@ -44,6 +47,12 @@ struct ted4_coder {
                   int64_t value); /* see ted4_options; NULL: no trace */
     void *trace_user;
 };
+
+/* spec 9.5: returns the least size in bytes of a substream that stands for n anchors or values. */
+static inline uint64_t ted4_rest_least(uint64_t n)
+{
+    return n / 8 + (n % 8 != 0);
+}
 
 /* Records the error code at byte offset at unless holds is true. Returns holds. */
 static inline int ted4_require(ted4_coder *c, int holds, ted4_status code, size_t at)
@@ -100,8 +109,8 @@ typedef enum {
 
 extern const char ted4_chunk_type[TED4_CHUNKS][5];
 
-/* Codes the magic bytes, the version, the profile and the level. */
-void ted4_walk_file_header(ted4_coder *c, uint8_t *level);
+/* Codes the magic bytes, the version, the profile and the level. minor is what a writer writes. */
+void ted4_walk_file_header(ted4_coder *c, unsigned minor, uint8_t *profile, uint8_t *level);
 /* Codes the type, the flags and the size. */
 void ted4_walk_frame(ted4_coder *c, ted4_frame *f);
 /* spec 15.2: codes the payload of ENDS, which must equal hash[16]. */
@@ -112,11 +121,19 @@ void ted4_walk_ends(ted4_coder *c, const uint8_t *hash);
 void ted4_walk_header(ted4_coder *c, ted4_header *h, ted4_shape *shape, unsigned level,
                       uint64_t file_bytes);
 
-/* walk_nets.c - spec 7. The caller has allocated the values of the blobs, or left them NULL where
- * the payload is too short for them; a reader does not access the latter. */
+/* walk_nets.c - spec 7. The caller has allocated the values of the blobs and, for mode 2, their
+ * exponents, or left them NULL where the payload is too short for them; a reader does not access
+ * the latter. */
 struct ted4_prior;
 void ted4_walk_nete(ted4_coder *c, ted4_scene *s, struct ted4_prior *prior);
-void ted4_walk_blob(ted4_coder *c, const char *element, ted4_blob *b);
+/* b: s->netr or s->bank. */
+void ted4_walk_blob(ted4_coder *c, const char *element, const ted4_scene *s, ted4_blob *b);
+
+/* walk_coded.c - spec 7.6: the rest of a blob of mode 2, behind its mode. Returns the byte offset
+ * of the substream, at which its errors are found. */
+size_t ted4_walk_coded_nete(ted4_coder *c, const ted4_scene *s, ted4_blob *b);
+size_t ted4_walk_coded_netr(ted4_coder *c, const ted4_scene *s, ted4_blob *b);
+size_t ted4_walk_coded_bank(ted4_coder *c, const ted4_scene *s, ted4_blob *b);
 
 /* walk_positions.c - spec 8. */
 void ted4_walk_positions(ted4_coder *c, ted4_scene *s);

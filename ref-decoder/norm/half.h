@@ -6,6 +6,7 @@
 
 #include <stdint.h>
 #include "base/bytes.h"
+#include "base/fixed.h"
 
 /* Returns X of spec 8: the value times 2^24, which is exact. |value| <= 1, so the exponent field is
  * at most 15. */
@@ -83,6 +84,52 @@ static inline uint64_t ted4_morton(const uint16_t *p)
 {
     return ted4_spread3(ted4_half_order(p[0])) << 2 | ted4_spread3(ted4_half_order(p[1])) << 1 |
            ted4_spread3(ted4_half_order(p[2]));
+}
+
+/* spec 8.2: returns whether positions may lie on a grid of so many bits. */
+static inline int ted4_grid_exists(unsigned depth)
+{
+    return (depth >= 6 && depth <= 12) || depth == 16;
+}
+
+/* spec 8.2: returns the place, on a grid of depth bits (1 .. 12, or 16), of a legal coordinate, or
+ * UINT32_MAX if it is none of the grid's. */
+static inline uint32_t ted4_grid_place(uint16_t h, unsigned depth)
+{
+    int32_t x, cell, half;
+
+    if (depth == 16)
+        return ted4_half_order(h);
+    x = ted4_half_q24(h);
+    cell = (int32_t)1 << (25 - depth);
+    half = (int32_t)1 << (depth - 1);
+    return x % cell != 0 || x / cell == half ? UINT32_MAX : (uint32_t)(x / cell + half);
+}
+
+/* spec 8.2: returns the pattern of the coordinate at a place. With depth 16 it may be illegal. */
+static inline uint16_t ted4_grid_half(uint32_t place, unsigned depth)
+{
+    const int32_t m = (int32_t)place - ((int32_t)1 << (depth - 1));
+    const uint32_t sign = m < 0 ? 0x8000 : 0;
+    uint32_t x, e;
+
+    if (depth == 16)
+        return (uint16_t)(place >= 0x8000 ? place - 0x8000 : 0xffff - place);
+    x = (uint32_t)(m < 0 ? -m : m) << (25 - depth); /* the coordinate times 2^24 */
+    if (x == 0)
+        return 0;
+    e = ted4_log2_floor(x); /* 13 or more: the number is normal */
+    return (uint16_t)(sign | (e - 9) << 10 | (x >> (e - 10) & 0x3ff));
+}
+
+/* Inverse of ted4_spread3: moves bit 3 i of x to bit i, and drops the other bits. */
+static inline uint32_t ted4_gather3(uint64_t x)
+{
+    x &= 0x249249249249;
+    x = (x | x >> 2) & 0x0c30c30c30c3;
+    x = (x | x >> 4) & 0x00f00f00f00f;
+    x = (x | x >> 8) & 0x0000ff0000ff;
+    return (uint32_t)((x | x >> 16) & 0xffff);
 }
 
 #endif

@@ -3,6 +3,7 @@
 #include "norm/octree.h"
 
 #include "norm/adaptive.h"
+#include "norm/half.h"
 
 /* The context of an occupancy bit: how many children its node's parent has (1, 2, more), and which
  * of the node's children are known to be occupied, behind a leading 1. Most nodes near the leaves
@@ -20,14 +21,49 @@ typedef struct {
     unsigned n_children, left;
 } node;
 
-/* Returns which children of the node with this prefix are occupied, bit i for child i. key: the
- * keys from the node's first one on; shift: bits of a key below a child's prefix. */
-static unsigned children_of(const uint64_t *key, size_t n, uint64_t prefix, unsigned shift)
+/* What is coded. n_leaves: how many positions the leaves so far have. */
+typedef struct {
+    ted4_coder *c;
+    uint16_t *position; /* [n][3] */
+    size_t n, n_leaves;
+    unsigned depth;
+    model m;
+} tree;
+
+uint64_t ted4_octree_key(const uint16_t *p, unsigned depth)
+{
+    return ted4_spread3(ted4_grid_place(p[0], depth)) << 2 |
+           ted4_spread3(ted4_grid_place(p[1], depth)) << 1 |
+           ted4_spread3(ted4_grid_place(p[2], depth));
+}
+
+/* Codes the next leaf. Returns 0 if there is no room for it, or if the writer's positions are not
+ * on the grid or not in order. */
+static int put_leaf(tree *t, uint64_t key)
+{
+    uint16_t *p = t->position + 3 * t->n_leaves;
+
+    if (t->n_leaves == t->n || (!t->c->reads && ted4_octree_key(p, t->depth) != key))
+        return 0;
+    t->n_leaves++;
+    for (unsigned j = 0; t->c->reads && j < 3; j++)
+        p[j] = ted4_grid_half(ted4_gather3(key >> (2 - j)), t->depth);
+    return 1;
+}
+
+/* Returns which children of the node with this prefix are occupied, bit i for child i, by the
+ * positions from the first that has no leaf yet on. shift: bits of a key below a child's prefix. */
+static unsigned children_of(const tree *t, uint64_t prefix, unsigned shift)
 {
     unsigned children = 0;
 
-    for (size_t i = 0; i < n && key[i] >> shift >> 3 == prefix; i++)
-        children |= 1u << (key[i] >> shift & 7);
+    for (size_t i = t->n_leaves; i < t->n; i++) {
+        const uint64_t key = ted4_octree_key(t->position + 3 * i, t->depth);
+
+        if (key >> shift >> 3 != prefix)
+            break;
+        children |= 1u << (key >> shift & 7);
+    }
     return children;
 }
 
@@ -58,48 +94,42 @@ static unsigned count_bits(unsigned x)
     return n;
 }
 
-static node enter(ted4_coder *c, model *m, uint64_t prefix, unsigned n_siblings, unsigned children)
+/* Codes the children of a node at this many levels above the leaves, 1 .. depth. */
+static node enter(tree *t, uint64_t prefix, unsigned n_siblings, unsigned below)
 {
-    node t = { prefix, 0, 0 };
+    ted4_adaptive *const bit = t->m.bit[n_siblings < FAMILIES ? n_siblings - 1 : FAMILIES - 1];
+    node way = { prefix, 0, 0 };
 
-    t.left =
-        code_children(c, m->bit[n_siblings < FAMILIES ? n_siblings - 1 : FAMILIES - 1], children);
-    t.n_children = count_bits(t.left);
-    return t;
+    way.left = code_children(t->c, bit, t->c->reads ? 0 : children_of(t, prefix, 3 * (below - 1)));
+    way.n_children = count_bits(way.left);
+    return way;
 }
 
-int ted4_octree_walk(ted4_coder *c, unsigned depth, size_t n, uint64_t *key)
+int ted4_octree_walk(ted4_coder *c, unsigned depth, size_t n, uint16_t *position)
 {
-    const int writes = !c->reads;
     node way[TED4_OCTREE_DEPTH];
-    size_t leaves = 0;
-    unsigned below = depth; /* levels below the node's own: 1 .. depth; depth is the root */
-    model m;
+    unsigned below = depth; /* of the node whose children are visited */
+    tree t = { .c = c, .position = position, .n = n, .depth = depth };
 
-    ted4_adaptive_init(m.bit[0], FAMILIES * PATTERNS);
-    way[0] = enter(c, &m, 0, 1, writes ? children_of(key, n, 0, 3 * (depth - 1)) : 0);
+    ted4_adaptive_init(t.m.bit[0], FAMILIES * PATTERNS);
+    way[0] = enter(&t, 0, 1, depth);
     while (c->error.code == TED4_OK) {
-        node *const t = &way[depth - below];
+        node *const from = &way[depth - below];
         uint64_t prefix;
 
-        if (t->left == 0) {
+        if (from->left == 0) {
             if (below == depth)
-                return leaves == n;
+                return t.n_leaves == n;
             below++;
             continue;
         }
-        prefix = t->prefix << 3 | ted4_log2_floor(t->left & -t->left);
-        t->left &= t->left - 1;
+        prefix = from->prefix << 3 | ted4_log2_floor(from->left & -from->left);
+        from->left &= from->left - 1;
         if (below > 1) {
-            const unsigned shift = 3 * (--below - 1);
-
-            way[depth - below] =
-                enter(c, &m, prefix, t->n_children,
-                      writes ? children_of(key + leaves, n - leaves, prefix, shift) : 0);
-        } else if (leaves == n) {
+            below--;
+            way[depth - below] = enter(&t, prefix, from->n_children, below);
+        } else if (!put_leaf(&t, prefix)) {
             return 0;
-        } else {
-            key[leaves++] = prefix;
         }
     }
     return 0;

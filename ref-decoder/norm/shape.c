@@ -63,18 +63,21 @@ static void shape_tier_r(ted4_shape *s, const ted4_header *h)
     const unsigned deform = h->motion == TED4_MOTION_INR      ? 84
                             : h->motion == TED4_MOTION_CONCAT ? (unsigned)h->phi_dim + h->bank_dim
                                                               : h->bank_dim;
-    size_t units = 0;
 
     if (h->motion == TED4_MOTION_BANK)
-        chain(&s->netr[TED4_NET_PROJECT], h->phi_dim, 0, 0, h->bank_dim, &s->n_netr, &units);
+        chain(&s->netr[TED4_NET_PROJECT], h->phi_dim, 0, 0, h->bank_dim, &s->n_netr, &s->n_units_r);
     if (h->motion != TED4_MOTION_NONE)
         chain(&s->netr[TED4_NET_DEFORM], deform, h->deform_layers, h->deform_width, 3 + f,
-              &s->n_netr, &units);
-    chain(&s->netr[TED4_NET_OPACITY], seen, h->head_layers, h->head_width, k, &s->n_netr, &units);
+              &s->n_netr, &s->n_units_r);
+    chain(&s->netr[TED4_NET_OPACITY], seen, h->head_layers, h->head_width, k, &s->n_netr,
+          &s->n_units_r);
     chain(&s->netr[TED4_NET_COVARIANCE], seen, h->head_layers, h->head_width, 7 * k, &s->n_netr,
-          &units);
+          &s->n_units_r);
     chain(&s->netr[TED4_NET_COLOUR], colour, h->head_layers, h->head_width, 3 * k, &s->n_netr,
-          &units);
+          &s->n_units_r);
+    /* The biases of a layer are one more unit. */
+    for (int i = 0; i < TED4_NETS_R; i++)
+        s->n_units_r += s->netr[i].n_layers;
     s->n_bank = h->phi_dim > 0 ? (uint64_t)h->bank_rows * h->bank_dim : 0;
 }
 

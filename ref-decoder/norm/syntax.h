@@ -18,6 +18,9 @@ enum {
     TED4_MAX_NETS = 24
 };
 
+/* spec 5.1: values of profile. */
+enum { TED4_PROFILE_MAIN, TED4_PROFILE_COMPACT };
+
 /* spec 6.2: the attribute types in stream order. */
 typedef enum { TED4_FEATURE, TED4_SCALING, TED4_OFFSET, TED4_PHI, TED4_TAU, TED4_TYPES } ted4_type;
 
@@ -89,24 +92,27 @@ typedef struct {
     ted4_net_shape hyper, slice[TED4_MAX_SLICES]; /* slice[0] never exists */
     size_t n_nete, n_units;                       /* numbers of f32 values and of shifts in NETE */
     ted4_net_shape netr[TED4_NETS_R];
-    size_t n_netr;
-    uint64_t n_bank; /* number of values of BANK, up to 2^41 */
+    size_t n_netr, n_units_r; /* numbers of f32 values and, in mode 2, of exponents in NETR */
+    uint64_t n_bank;          /* number of values of BANK, up to 2^41 */
 } ted4_shape;
 
 /* shape.c: fills *s from a header whose values are in range. It never fails. */
 void ted4_shape_make(ted4_shape *s, const ted4_header *h);
 
-enum { TED4_BLOB_RAW, TED4_BLOB_DEFLATED, TED4_BLOB_AUTO = 255 };
+enum { TED4_BLOB_RAW, TED4_BLOB_DEFLATED, TED4_BLOB_CODED, TED4_BLOB_AUTO = 255 };
 
 /* A blob (spec 7.2). values: n binary32 numbers, owned by the scene; NULL if not allocated, in
  * which case n is only the number that the header implies. deflated: the zlib bytes of mode
- * TED4_BLOB_DEFLATED. TED4_BLOB_AUTO: no mode is given, and the writer chooses the smaller form. */
+ * TED4_BLOB_DEFLATED. exponent: of mode TED4_BLOB_CODED in NETR and BANK, one per unit, each 128
+ * more than the exponent of the power of two that the values of the unit are multiples of; owned as
+ * values are. TED4_BLOB_AUTO: no mode is given, and the writer chooses the smallest form. */
 typedef struct {
     float *values;
     uint64_t n;
     uint8_t mode;
     uint8_t *deflated;
     size_t deflated_size;
+    uint8_t *exponent;
 } ted4_blob;
 
 enum { TED4_PROBS = 7 }; /* per tile: dynamic_prob, offset_prob[6] */
@@ -115,7 +121,9 @@ enum { TED4_PROBS = 7 }; /* per tile: dynamic_prob, offset_prob[6] */
  * the number of anchors. */
 struct ted4_scene {
     ted4_arena arena;
-    uint8_t level; /* spec 13.1; 0: not from a file */
+    uint8_t level;   /* spec 13.1; 0: not from a file */
+    uint8_t profile; /* spec 5.1; the writer's choice where the scene is not from a file */
+    uint8_t grid;    /* spec 8.2, profile Compact; 0: the writer chooses it */
     ted4_header head;
     ted4_shape shape;
     uint8_t *shift; /* [n_units] spec 7.3 */

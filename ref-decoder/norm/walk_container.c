@@ -11,7 +11,7 @@ const char ted4_chunk_type[TED4_CHUNKS][5] = { "HEAD", "NETE", "NETR", "BANK",
                                                "POSN", "TILE", "ENDS" };
 
 /* spec 5.1 */
-void ted4_walk_file_header(ted4_coder *c, uint8_t *level)
+void ted4_walk_file_header(ted4_coder *c, unsigned minor, uint8_t *profile, uint8_t *level)
 {
     static const uint8_t magic[8] = { 0x89, 'T', 'E', 'D', '4', 13, 10, 26 };
     uint8_t bytes[8];
@@ -24,9 +24,10 @@ void ted4_walk_file_header(ted4_coder *c, uint8_t *level)
         ted4_trace(c, at + (size_t)i, "magic", i, bytes[i]);
     at = c->pos;
     ted4_require(c, ted4_code(c, "major", 0, 1, 1) == 1, TED4_E_CON_VERSION, at);
-    ted4_code(c, "minor", 0, 1, 0);
+    ted4_code(c, "minor", 0, 1, minor);
     at = c->pos;
-    ted4_require(c, ted4_code(c, "profile", 0, 1, 0) == 0, TED4_E_UNSUPPORTED_PROFILE, at);
+    *profile = (uint8_t)ted4_code(c, "profile", 0, 1, *profile);
+    ted4_require(c, *profile <= TED4_PROFILE_COMPACT, TED4_E_UNSUPPORTED_PROFILE, at);
     at = c->pos;
     *level = (uint8_t)ted4_code(c, "level", 0, 1, *level);
     ted4_require(c, ted4_limits_of(*level) != NULL, TED4_E_CON_LEVEL, at);

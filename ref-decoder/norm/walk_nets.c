@@ -11,20 +11,34 @@ typedef struct {
     size_t at, step;
 } value_offsets;
 
-/* Codes the mode and the bytes of a blob. Returns the offsets of its values. */
-static value_offsets walk_bytes(ted4_coder *c, const char *element, ted4_blob *b)
+/* Codes the values of mode 2. */
+static size_t walk_coded(ted4_coder *c, const ted4_scene *s, ted4_blob *b)
 {
+    return b == &s->nete   ? ted4_walk_coded_nete(c, s, b)
+           : b == &s->netr ? ted4_walk_coded_netr(c, s, b)
+                           : ted4_walk_coded_bank(c, s, b);
+}
+
+/* Codes the mode and the bytes of a blob. Returns the offsets of its values. */
+static value_offsets walk_bytes(ted4_coder *c, const char *element, const ted4_scene *s,
+                                ted4_blob *b)
+{
+    const uint8_t most = s->profile == TED4_PROFILE_MAIN ? TED4_BLOB_DEFLATED : TED4_BLOB_CODED;
     size_t at = c->pos;
     value_offsets v;
 
     b->mode = (uint8_t)ted4_code(c, "mode", 0, 1, b->mode);
-    ted4_require(c, b->mode <= TED4_BLOB_DEFLATED, TED4_E_NET_MODE, at);
+    ted4_require(c, b->mode <= most, TED4_E_NET_MODE, at);
     at = c->pos;
     v.at = at;
     v.step = b->mode == TED4_BLOB_RAW ? 4 : 0;
     if (b->mode == TED4_BLOB_DEFLATED) {
         c->ops->deflated(c, b);
         ted4_trace(c, at, element, -1, (int64_t)b->deflated_size);
+        return v;
+    }
+    if (b->mode == TED4_BLOB_CODED) {
+        v.at = walk_coded(c, s, b);
         return v;
     }
     c->ops->array(c, 4, b->values, b->n);
@@ -34,9 +48,9 @@ static value_offsets walk_bytes(ted4_coder *c, const char *element, ted4_blob *b
 }
 
 /* spec 7.2, 7.4, 7.5 */
-void ted4_walk_blob(ted4_coder *c, const char *element, ted4_blob *b)
+void ted4_walk_blob(ted4_coder *c, const char *element, const ted4_scene *s, ted4_blob *b)
 {
-    const value_offsets v = walk_bytes(c, element, b);
+    const value_offsets v = walk_bytes(c, element, s, b);
 
     for (size_t i = 0; c->error.code == TED4_OK && i < b->n; i++) {
         ted4_require(c, ted4_float_legal(ted4_float_bits(b->values[i])), TED4_E_NET_VALUE,
@@ -74,7 +88,7 @@ void ted4_walk_nete(ted4_coder *c, ted4_scene *s, ted4_prior *prior)
     walk_shifts(c, s->shift, &s->shape, s->head.context_bits);
     if (c->error.code != TED4_OK)
         return;
-    v = walk_bytes(c, "nete", &s->nete);
+    v = walk_bytes(c, "nete", s, &s->nete);
     if (c->error.code == TED4_OK && ted4_prior_load(prior, s->nete.values, s->shift, &e) != TED4_OK)
         ted4_fail(&c->error, e.code, v.at + v.step * e.offset);
 }

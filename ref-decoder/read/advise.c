@@ -115,7 +115,7 @@ static void advise_blob(ted4_findings *f, const ted4_blob *b, const ted4_chunk_p
 static void advise_chunks(ted4_findings *f, const ted4_scene *s, ted4_arena *a)
 {
     ted4_reader r;
-    int minor = 0; /* the lowest that has the file's chunk types (R-CON-007) */
+    int minor = 0; /* the lowest that has the file's profile and chunk types (R-CON-007) */
 
     ted4_reader_init(&r, f->data, TED4_FILE_HEADER_SIZE, f->size, 1);
     while (r.base.pos < f->size) {
@@ -129,6 +129,8 @@ static void advise_chunks(ted4_findings *f, const ted4_scene *s, ted4_arena *a)
         default: break;
         }
     }
+    if (s->profile != TED4_PROFILE_MAIN)
+        minor = 2;
     if (f->data[MINOR_AT] != minor)
         ted4_find_advice(f, TED4_ADV_MINOR, NULL, MINOR_AT, 2, f->data[MINOR_AT], minor);
 }

@@ -20,7 +20,7 @@ static int judge_file_header(ted4_collector *c)
     ted4_status code;
 
     ted4_reader_init(&r, c->copy, 0, c->f->size, 1);
-    c->level = ted4_container_header(&r);
+    c->level = ted4_container_header(&r, &c->d.s->profile);
     code = r.base.error.code;
     if (code == TED4_OK)
         return 1;

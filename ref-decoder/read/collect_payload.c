@@ -211,7 +211,7 @@ void ted4_collect_blob(ted4_collector *c, const ted4_chunk_place *p, const char 
          n++) {
         ted4_reader r = ted4_decoder_reader(&c->d, p);
 
-        ted4_walk_blob(&r.base, element, b);
+        ted4_walk_blob(&r.base, element, c->d.s, b);
         c->d.file.base.error = verdict(&r);
         e = ted4_collect_error(c);
     }
@@ -243,6 +243,8 @@ void ted4_collect_positions(ted4_collector *c, const ted4_chunk_place *p)
         e = ted4_collect_error(c);
     }
     c->posn = e.code == TED4_OK;
+    if (c->d.s->profile != TED4_PROFILE_MAIN) /* one substream: nothing behind an error is known */
+        return;
     for (int n = 1; e.code >= TED4_E_POS_VALUE && e.code <= TED4_E_POS_ORDER && may_go_on(c, p, n);
          n++) {
         const size_t anchor = (e.offset - p->payload) / 6;

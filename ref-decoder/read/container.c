@@ -56,12 +56,12 @@ static void judge(ted4_reader *r, size_t at, const ted4_frame *f, int *before)
         *before = type;
 }
 
-uint8_t ted4_container_header(ted4_reader *r)
+uint8_t ted4_container_header(ted4_reader *r, uint8_t *profile)
 {
     ted4_coder *c = &r->base;
     uint8_t level = 0;
 
-    ted4_walk_file_header(c, &level);
+    ted4_walk_file_header(c, 0, profile, &level);
     if (c->error.code == TED4_OK)
         ted4_require(c, r->end <= ted4_limits_of(level)->file_bytes, TED4_E_LVL_EXCEEDED,
                      c->pos - 1);
@@ -103,8 +103,9 @@ void ted4_container_check(ted4_reader *r)
 {
     ted4_coder *c = &r->base;
     int before = -1;
+    uint8_t profile = 0;
 
-    (void)ted4_container_header(r);
+    (void)ted4_container_header(r, &profile);
     while (c->error.code == TED4_OK && before != TED4_ENDS)
         (void)ted4_container_judge(r, &before);
     ted4_require(c, c->pos == r->end, TED4_E_CON_TRAILING, c->pos);

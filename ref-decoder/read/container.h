@@ -18,8 +18,8 @@ typedef struct {
 } ted4_chunk_place;
 
 /* A part of pass 1: checks the file header, and the file size against the bounds of the level.
- * Returns the level. */
-uint8_t ted4_container_header(ted4_reader *r);
+ * Returns the level, and the profile in *profile. */
+uint8_t ted4_container_header(ted4_reader *r, uint8_t *profile);
 /* A part of pass 1: checks the frame, hash and order of the chunk at r's position, moves the
  * position behind the chunk, and returns the chunk. *before is the type of the last known chunk
  * (-1: none yet) and is updated. If r has failed before, or if the chunk does not fit in the file,

@@ -64,7 +64,7 @@ static void read_head(decoder *d, const ted4_chunk_place *p)
     finish_payload(d, &r);
 }
 
-/* Allocates n values, but only if the payload can hold them, raw or deflated, behind its first skip
+/* Allocates n values, but only if the payload can hold them, in its mode, behind its first skip
  * bytes (R-LVL-005). */
 static void prepare_blob(decoder *d, const ted4_chunk_place *p, size_t skip, ted4_blob *b,
                          uint64_t n)
@@ -74,9 +74,18 @@ static void prepare_blob(decoder *d, const ted4_chunk_place *p, size_t skip, ted
     const uint8_t mode = bytes > skip ? d->file.data[p->payload + skip] : TED4_BLOB_RAW;
 
     b->n = n;
-    if (mode == TED4_BLOB_RAW ? left / 4 >= n : !ted4_inflate_impossible(left, n))
-        if (!ted4_blob_alloc(d->s, b, n))
+    if (mode == TED4_BLOB_RAW     ? left / 4 < n
+        : mode == TED4_BLOB_CODED ? left < ted4_rest_least(n)
+                                  : ted4_inflate_impossible(left, n))
+        return;
+    if (!ted4_blob_alloc(d->s, b, n))
+        no_memory(d, p->payload);
+    /* Units are not more than values. */
+    if (mode == TED4_BLOB_CODED && b != &d->s->nete) {
+        b->exponent = ted4_arena_alloc(&d->s->arena, n, 1);
+        if (b->exponent == NULL)
             no_memory(d, p->payload);
+    }
 }
 
 static void read_nete(decoder *d, const ted4_chunk_place *p)
@@ -104,7 +113,7 @@ static void read_blob(decoder *d, const ted4_chunk_place *p, const char *element
     prepare_blob(d, p, 0, b, n);
     if (d->file.base.error.code != TED4_OK)
         return;
-    ted4_walk_blob(&r.base, element, b);
+    ted4_walk_blob(&r.base, element, d->s, b);
     finish_payload(d, &r);
 }
 
@@ -138,8 +147,10 @@ static void prepare_jobs(decoder *d, size_t at)
 static void read_positions(decoder *d, const ted4_chunk_place *p)
 {
     ted4_reader r = ted4_decoder_reader(d, p);
+    const uint32_t n = d->s->head.n_anchors;
+    const size_t size = p->end - p->payload;
 
-    if ((p->end - p->payload) / 6 >= d->s->head.n_anchors) {
+    if (d->s->profile == TED4_PROFILE_COMPACT ? size > ted4_rest_least(n) : size / 6 >= n) {
         if (!ted4_scene_alloc_anchors(d->s))
             no_memory(d, p->payload);
         else
@@ -235,7 +246,7 @@ static void read_payloads(decoder *d)
     c->pos = 0;
     c->trace = d->o->trace;
     c->trace_user = d->o->trace_user;
-    ted4_walk_file_header(c, &d->s->level);
+    ted4_walk_file_header(c, 0, &d->s->profile, &d->s->level);
     while (c->error.code == TED4_OK && c->pos < d->file.end) {
         const ted4_chunk_place p = ted4_container_next(&d->file);
 

@@ -5,10 +5,11 @@
 #include "base/bytes.h"
 #include "norm/syntax.h"
 
-enum { BYTES = 0, SUBSTREAM = 255, MAX_SUBSTREAMS = 24, DEFLATED = -1 };
+enum { BYTES = 0, REST = 254, SUBSTREAM = 255, MAX_SUBSTREAMS = 24, DEFLATED = -1 };
 
 /* width is the width of a number in bytes. It is BYTES for an element of size bytes, and SUBSTREAM
- * for a substream, whose size is given by a "size" element of the file. */
+ * for a substream, whose size is given by a "size" element of the file, and REST for one that takes
+ * the rest of the payload. */
 typedef struct {
     const char *name;
     uint16_t id;
@@ -63,7 +64,11 @@ static const element table[] = {
     { "nete", 98, 4, 0 },
     { "netr", 100, 4, 0 },
     { "bank", 102, 4, 0 },
+    { "unit_exponent", 104, 1, 0 },
+    { "weights_substream", 105, REST, 0 },
     { "position", 112, 2, 0 },
+    { "grid", 113, 1, 0 },
+    { "tree_substream", 114, REST, 0 },
     { "tile_index", 128, 4, 0 },
     { "dynamic_prob", 129, 2, 0 },
     { "offset_prob", 130, 2, 0 },
@@ -90,7 +95,8 @@ typedef struct {
     uint32_t size[MAX_SUBSTREAMS]; /* sizes of the substreams of the tile */
     unsigned n_opened;
     uint32_t chunk_size;
-    int last; /* entry of the last element: the search for the next one begins there */
+    size_t payload; /* offset of the chunk's payload */
+    int last;       /* entry of the last element: the search for the next one begins there */
 } dump;
 
 static void put_number(dump *d, uint16_t id, uint32_t value)
@@ -147,6 +153,8 @@ static void trace(void *user, size_t offset, const char *name, int64_t index, in
     d->last = at;
     if (e->width == SUBSTREAM) {
         put_bytes(d, e->id, offset, d->size[d->n_opened++]);
+    } else if (e->width == REST) {
+        put_bytes(d, e->id, offset, (uint32_t)(d->payload + d->chunk_size - offset));
     } else if (e->width == BYTES) {
         if (d->chunk_size ==
             0) /* only an ancillary chunk can be empty, and an empty one is not traced */
@@ -157,8 +165,10 @@ static void trace(void *user, size_t offset, const char *name, int64_t index, in
     } else {
         put_number(d, e->id, (uint32_t)value);
     }
-    if (strcmp(name, "chunk_size") == 0)
+    if (strcmp(name, "chunk_size") == 0) {
         d->chunk_size = (uint32_t)value;
+        d->payload = offset + 4;
+    }
     if (strcmp(name, "size") == 0) {
         d->size[index] = (uint32_t)value;
         d->n_opened = 0;

@@ -14,7 +14,7 @@ static ted4_error read_while_good(ted4_decoder *d, int truncated)
     int before = -1;
     ted4_error e;
 
-    d->s->level = ted4_container_header(&frames);
+    d->s->level = ted4_container_header(&frames, &d->s->profile);
     /* The full size of a truncated file is not known. The bounds of its level are checked for the
      * largest file size that the level allows, for which they are the least strict. */
     if (frames.base.error.code == TED4_OK && truncated)

@@ -115,6 +115,19 @@ static void sizes(ted4_coder *c, uint32_t *size, unsigned n)
     ted4_require(c, sum == r->end - c->pos, TED4_E_CON_PAYLOAD_SIZE, at);
 }
 
+/* spec 9.5. A substream that is too small for n is found before its state is looked at. */
+static void rest(ted4_coder *c, uint64_t n)
+{
+    ted4_reader *r = reader_of(c);
+    const size_t size = r->end - c->pos;
+
+    if (c->error.code != TED4_OK)
+        return;
+    ted4_require(c, size >= ted4_rest_least(n), TED4_E_ENT_SIZE, c->pos);
+    r->size[0] = (uint32_t)size; /* part of a chunk */
+    r->n_opened = 0;
+}
+
 static void open_substream(ted4_coder *c, size_t n)
 {
     ted4_reader *r = reader_of(c);
@@ -235,8 +248,8 @@ static void gauss(ted4_coder *c, size_t n, const int32_t *mu, const uint8_t *sig
 
 void ted4_reader_init(ted4_reader *r, const uint8_t *data, size_t pos, size_t end, int whole_file)
 {
-    static const ted4_coder_ops ops = { number,         array,           deflated, sizes,
-                                        open_substream, close_substream, bit,      gauss };
+    static const ted4_coder_ops ops = { number,          array, deflated, sizes, open_substream,
+                                        close_substream, bit,   gauss,    rest };
 
     memset(r, 0, sizeof *r);
     r->base.ops = &ops;

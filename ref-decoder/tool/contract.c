@@ -42,10 +42,10 @@ static int print(json_t *o)
 static json_t *capabilities(void)
 {
     return json_pack(
-        "{s:i, s:s, s:s, s:s, s:[s], s:i, s:[s,s,s,s,s,s], s:o, s:b, s:b, s:[], s:[s,s]}",
+        "{s:i, s:s, s:s, s:s, s:[s,s], s:i, s:[s,s,s,s,s,s], s:o, s:b, s:b, s:[], s:[s,s]}",
         "protocol", 1, "name", "ted4dec", "version", TED4_VERSION, "spec", TED4_SPEC_VERSION,
-        "profiles", "Main", "max_level", 31, "tiers", "T0", "T1", "T2", "T3", "T4", "T5", "class",
-        ted4_recon_class_x() ? json_string("X") : json_null(), "strict", 1, "lenient", 1,
+        "profiles", "Main", "Compact", "max_level", 31, "tiers", "T0", "T1", "T2", "T3", "T4", "T5",
+        "class", ted4_recon_class_x() ? json_string("X") : json_null(), "strict", 1, "lenient", 1,
         "declines", "knobs", "max_alloc_total", "max_work");
 }
 

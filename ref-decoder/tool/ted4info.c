@@ -159,7 +159,11 @@ static void print_frames(const ted4_info *info)
         printf("seconds     0 to %.7g\n", last_second(info));
 }
 
-static void print_summary(const settings *s, const ted4_info *info, size_t size)
+/* Offset in the file (spec 5.1). */
+enum { PROFILE_AT = 10 };
+
+static void print_summary(const settings *s, const ted4_info *info, const uint8_t *data,
+                          size_t size)
 {
     static const char *const motion[] = { [TED4_MOTION_NONE] = "none",
                                           [TED4_MOTION_BANK] = "bank",
@@ -171,7 +175,8 @@ static void print_summary(const settings *s, const ted4_info *info, size_t size)
     char hash[33];
 
     ted4_hex(hash, info->hash, sizeof info->hash);
-    printf("%s: TED4, Main profile, level %d, %zu bytes\n", s->input, info->level, size);
+    printf("%s: TED4, %s profile, level %d, %zu bytes\n", s->input,
+           data[PROFILE_AT] == 0 ? "Main" : "Compact", info->level, size);
     printf("anchors     %" PRIu32 ", moving %" PRIu32 "\n", info->n_anchors, info->n_dynamic);
     printf("Gaussians   %zu, at most %" PRIu32 " per anchor\n", info->n_gaussians, info->n_offsets);
     print_frames(info);
@@ -385,7 +390,7 @@ static int show(const settings *s, const ted4_info *info, const ted4_budget *b, 
     if (s->on[OPT_JSON]) {
         print_json(s, info, b, data, size);
     } else if (!s->on[OPT_QUIET]) {
-        print_summary(s, info, size);
+        print_summary(s, info, data, size);
         print_ancillary(data, size);
         if (s->on[OPT_VERBOSE])
             print_header(b);

@@ -21,6 +21,7 @@
 #include "train/model/header_from_options.h"
 #include "train/step/trainer_init.h"
 #include "training.h"
+#include "transcode.h"
 
 /* What a run of the program works with. All borrowed. */
 typedef struct {
@@ -328,6 +329,41 @@ static int work(const encoder *e)
     return status;
 }
 
+/* --transcode. Returns the exit status. */
+static int transcode(const encoder *e)
+{
+    const ted4_request *r = e->request;
+    size_t size, out_size, dropped;
+    uint8_t *file = ted4_read_file(r->transcode, &size), *out;
+    char text[1024];
+    const char *why;
+    int sorted, status;
+
+    if (file == NULL) {
+        snprintf(text, sizeof text, "%s: cannot be read", r->transcode);
+        return complain(e, text);
+    }
+    if (ted4_transcode(file, size, r->profile, e->parallel, &out, &out_size, &sorted, &dropped,
+                       &why) != 0) {
+        free(file);
+        snprintf(text, sizeof text, "%s: %s", r->transcode, why);
+        return complain(e, text);
+    }
+    if (sorted)
+        ted4_teller_error(e->teller, "warning: anchors are in another order, with another hash");
+    if (dropped > 0)
+        ted4_teller_error(e->teller, "warning: %zu unknown chunks are left out", dropped);
+    status = ted4_file_write(r->out, out, out_size, text, sizeof text) != 0 ? complain(e, text)
+                                                                            : TED4_EXIT_FINE;
+    if (status == TED4_EXIT_FINE && r->json)
+        printf("{\"bytes\":%zu}\n", out_size);
+    else if (status == TED4_EXIT_FINE)
+        ted4_teller_say(e->teller, "%s: %zu bytes, from %zu", r->out, out_size, size);
+    free(file);
+    free(out);
+    return status;
+}
+
 /* Returns how many threads this process takes; 0: as many as there are cores. */
 static int threads_of(const ted4_request *r, const ted4_exchange *x)
 {
@@ -374,7 +410,7 @@ int ted4_encoder_main(int argc, char **argv, ted4_exchange *x)
 
     if (status == TED4_EXIT_FINE) {
         ted4_threads_init(&p, threads_of(&r, x));
-        status = work(&e);
+        status = r.transcode != NULL ? transcode(&e) : work(&e);
         ted4_threads_finish(&p);
     }
     if (fflush(stdout) != 0 || ferror(stdout))

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "norm/syntax.h"
 #include "ted4.h"
 #include "tool/arguments.h"
 #include "tool/output.h"
@@ -36,6 +37,8 @@ enum {
     OPT_RESUME,
     OPT_STAGE1,
     OPT_LOG,
+    OPT_PROFILE,
+    OPT_TRANSCODE,
     OPT_TITLE,
     OPT_AUTHOR,
     OPT_LICENCE,
@@ -96,6 +99,10 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
     [OPT_RESUME] = { 0, "resume", NULL, "go on from the checkpoint if it is there" },
     [OPT_STAGE1] = { 0, "stage1", "FILE", "begin with this end of stage 1, or make the file" },
     [OPT_LOG] = { 0, "log", "FILE", "JSON lines of progress; with --resume it goes on" },
+    [OPT_PROFILE] = { 0, "profile", "NAME",
+                      "main (default), which every decoder reads, or compact, which is smaller" },
+    [OPT_TRANSCODE] = { 0, "transcode", "FILE",
+                        "no training: write this file again, in the profile, without loss" },
     [OPT_TITLE] = { 0, "title", "TEXT", "title of the scene, for players and ted4info" },
     [OPT_AUTHOR] = { 0, "author", "TEXT", "who made it" },
     [OPT_LICENCE] = { 0, "licence", "TEXT", "an SPDX expression, such as CC-BY-4.0, or a text" },
@@ -229,6 +236,14 @@ static int take_bounds(ted4_request *r, const char *value)
     return TED4_REQUEST_GO;
 }
 
+static int take_profile(const char *value, int *profile)
+{
+    *profile = strcmp(value, "compact") == 0 ? TED4_PROFILE_COMPACT : TED4_PROFILE_MAIN;
+    return *profile == TED4_PROFILE_COMPACT || strcmp(value, "main") == 0
+               ? TED4_REQUEST_GO
+               : bad_value(OPT_PROFILE, value, "main or compact");
+}
+
 /* A text that becomes one line of META. */
 static int take_text(int option, const char *value, const char **to)
 {
@@ -266,6 +281,8 @@ static int take(ted4_request *r, pending *p, int option, const char *value)
     case OPT_CHECKPOINT: r->checkpoint = value; break;
     case OPT_STAGE1: r->stage1 = value; break;
     case OPT_LOG: r->log = value; break;
+    case OPT_TRANSCODE: r->transcode = value; break;
+    case OPT_PROFILE: return take_profile(value, &r->profile);
     case OPT_TITLE: return take_text(option, value, &r->title);
     case OPT_AUTHOR: return take_text(option, value, &r->author);
     case OPT_LICENCE: return take_text(option, value, &r->licence);
@@ -401,9 +418,10 @@ int ted4_request_parse(ted4_request *r, int argc, char **argv)
     }
     if (option != TED4_ARGUMENTS_END)
         return option == TED4_ARGUMENTS_DONE ? TED4_REQUEST_DONE : TED4_REQUEST_BAD;
-    if (optind + 1 != argc)
-        return complain("one scene folder expected; --help lists the options");
-    r->scene = argv[optind];
+    if (optind + (r->transcode == NULL) != argc)
+        return complain(r->transcode == NULL ? "one scene folder expected; --help lists the options"
+                                             : "no scene folder expected beside --transcode");
+    r->scene = r->transcode == NULL ? argv[optind] : NULL;
     if (r->out == NULL && !r->check)
         return complain("-o FILE.ted4 expected");
     if (r->out != NULL && !ted4_has_suffix(r->out, ".ted4"))

@@ -50,6 +50,12 @@ static void close_substream(ted4_coder *c)
     (void)c;
 }
 
+static void rest(ted4_coder *c, uint64_t n)
+{
+    (void)c;
+    (void)n;
+}
+
 static void put(void *counter, ted4_slots s)
 {
     ted4_counter *n = counter;
@@ -75,8 +81,8 @@ static void gauss(ted4_coder *c, size_t n, const int32_t *mu, const uint8_t *sig
 
 void ted4_counter_init(ted4_counter *n)
 {
-    static const ted4_coder_ops ops = { number,         array,           deflated, sizes,
-                                        open_substream, close_substream, bit,      gauss };
+    static const ted4_coder_ops ops = { number,          array, deflated, sizes, open_substream,
+                                        close_substream, bit,   gauss,    rest };
 
     memset(n, 0, sizeof *n);
     n->base.ops = &ops;

@@ -78,8 +78,15 @@ static void deflated(ted4_coder *c, ted4_blob *b)
 static void sizes(ted4_coder *c, uint32_t *size, unsigned n)
 {
     writer_of(c)->sizes = c->pos;
+    writer_of(c)->least = 0;
     memset(size, 0, n * sizeof *size);
     array(c, 4, size, n);
+}
+
+static void rest(ted4_coder *c, uint64_t n)
+{
+    writer_of(c)->sizes = SIZE_MAX;
+    writer_of(c)->least = ted4_rest_least(n);
 }
 
 static void open_substream(ted4_coder *c, size_t n)
@@ -103,6 +110,9 @@ static void close_substream(ted4_coder *c)
     if (!ted4_require(c, !w->out.failed, TED4_E_LIMIT_MEMORY, c->pos))
         return;
     c->pos = w->out.size;
+    ted4_require(c, c->pos - w->opened >= w->least, TED4_E_ENT_SIZE, w->opened);
+    if (w->sizes == SIZE_MAX)
+        return;
     ted4_store32(w->out.data + w->sizes, (uint32_t)(c->pos - w->opened));
     w->sizes += 4;
 }
@@ -138,8 +148,8 @@ static void gauss(ted4_coder *c, size_t n, const int32_t *mu, const uint8_t *sig
 
 void ted4_writer_init(ted4_writer *w)
 {
-    static const ted4_coder_ops ops = { number,         array,           deflated, sizes,
-                                        open_substream, close_substream, bit,      gauss };
+    static const ted4_coder_ops ops = { number,          array, deflated, sizes, open_substream,
+                                        close_substream, bit,   gauss,    rest };
 
     memset(w, 0, sizeof *w);
     w->base.ops = &ops;

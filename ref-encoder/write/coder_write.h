@@ -10,7 +10,9 @@ typedef struct {
     ted4_coder base;          /* must be first; base.pos is out.size */
     ted4_buffer out;          /* owned */
     ted4_rans_enc rans;       /* owned */
-    size_t sizes;             /* offset in out of the next entry of the tile's size[] to fill in */
+    size_t sizes;             /* offset in out of the next entry of the tile's size[] to fill in;
+                                 SIZE_MAX: there is none */
+    uint64_t least;           /* bytes that the current substream must have */
     size_t opened, n_symbols; /* of the current substream: offset in out, number of symbols */
 } ted4_writer;
 

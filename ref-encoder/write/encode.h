@@ -16,12 +16,12 @@
 ted4_status ted4_scene_steps(ted4_scene *s, const ted4_parallel *p, ted4_error *e);
 
 /* Writes a whole file. level 0 stands for the lowest level that fits (ted4_level_lowest). Blobs of
- * mode TED4_BLOB_AUTO are deflated if that is smaller, and probabilities of 0 are computed from the
- * masks. The modes and probabilities of a scene that was read from a file are written unchanged. A
- * scene that no decoder would accept is refused with the status that the decoder would return. Step
- * indices that are not those of the prior, and masks that contradict the header, are refused with
- * TED4_E_SYN_HASH. On success *out is owned by the caller, who frees it with free(); on failure it
- * is NULL. e may be NULL. */
+ * mode TED4_BLOB_AUTO get the smallest mode that s->profile has, and probabilities of 0 are
+ * computed from the masks. The modes and probabilities of a scene that was read from a file are
+ * written unchanged. A scene that no decoder would accept is refused with the status that the
+ * decoder would return. Step indices that are not those of the prior, and masks that contradict the
+ * header, are refused with TED4_E_SYN_HASH. On success *out is owned by the caller, who frees it
+ * with free(); on failure it is NULL. e may be NULL. */
 ted4_status ted4_encode(const ted4_scene *s, int level, const ted4_parallel *p, uint8_t **out,
                         size_t *size, ted4_error *e);
 

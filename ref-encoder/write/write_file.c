@@ -8,11 +8,12 @@
 #include <xxhash.h>
 #include "base/bytes.h"
 #include "norm/limits.h"
+#include "write/coded.h"
 #include "write/coder_write.h"
 #include "write/deflate.h"
 #include "write/tiles.h"
 
-enum { LEVEL_BYTE = 11, META_FLAGS = 2 };
+enum { LEVEL_BYTE = 11, META_FLAGS = 2, COMPACT_MINOR = 2 };
 
 /* Writes the type, the flags and a size of 0, which close_chunk corrects. Returns the offset of the
  * chunk. */
@@ -45,8 +46,8 @@ static void close_chunk(ted4_writer *w, size_t at)
     c->ops->number(c, 4, (uint32_t)(hash >> 32));
 }
 
-/* Chooses the mode of a blob that has none: it is deflated only if that is smaller. */
-static void choose_mode(ted4_blob *b, ted4_arena *arena, ted4_error *e)
+/* Chooses the mode of a blob of s that has none: the smallest that the profile has. */
+static void choose_mode(const ted4_scene *s, ted4_blob *b, ted4_arena *arena, ted4_error *e)
 {
     uint8_t *bytes, *packed;
     size_t size;
@@ -65,13 +66,15 @@ static void choose_mode(ted4_blob *b, ted4_arena *arena, ted4_error *e)
         b->deflated = packed;
         b->deflated_size = size;
     }
+    if (s->profile == TED4_PROFILE_COMPACT)
+        (void)ted4_blob_code(s, b, arena, b->mode == TED4_BLOB_RAW ? 4 * b->n : size);
 }
 
-static void write_blob(ted4_writer *w, ted4_chunk type, ted4_blob *b)
+static void write_blob(ted4_writer *w, ted4_chunk type, const ted4_scene *s, ted4_blob *b)
 {
     const size_t at = open_chunk(w, type);
 
-    ted4_walk_blob(&w->base, "value", b);
+    ted4_walk_blob(&w->base, "value", s, b);
     close_chunk(w, at);
 }
 
@@ -81,15 +84,17 @@ static void write_front(ted4_writer *w, ted4_draft *d)
     ted4_coder *c = &w->base;
     size_t at;
 
-    choose_mode(&d->s.nete, &d->arena, &c->error);
-    choose_mode(&d->s.netr, &d->arena, &c->error);
-    choose_mode(&d->s.bank, &d->arena, &c->error);
+    choose_mode(&d->s, &d->s.nete, &d->arena, &c->error);
+    choose_mode(&d->s, &d->s.netr, &d->arena, &c->error);
+    choose_mode(&d->s, &d->s.bank, &d->arena, &c->error);
+    if (d->s.profile == TED4_PROFILE_COMPACT && d->s.grid == 0)
+        d->s.grid = (uint8_t)ted4_coarsest_grid(d->s.position, d->s.head.n_anchors);
     at = open_chunk(w, TED4_NETE);
     ted4_walk_nete(c, &d->s, &d->prior);
     close_chunk(w, at);
-    write_blob(w, TED4_NETR, &d->s.netr);
+    write_blob(w, TED4_NETR, &d->s, &d->s.netr);
     if (d->s.shape.n_bank > 0)
-        write_blob(w, TED4_BANK, &d->s.bank);
+        write_blob(w, TED4_BANK, &d->s, &d->s.bank);
     at = open_chunk(w, TED4_POSN);
     ted4_walk_positions(c, &d->s);
     close_chunk(w, at);
@@ -167,13 +172,14 @@ static void write_file(ted4_writer *w, const ted4_scene *s, int level, char *tex
                        const ted4_parallel *p)
 {
     ted4_coder *c = &w->base;
-    uint8_t declared = (uint8_t)(level == 0 ? TED4_LEVEL_UNBOUNDED : level);
+    uint8_t declared = (uint8_t)(level == 0 ? TED4_LEVEL_UNBOUNDED : level), profile = s->profile;
     ted4_header head = s->head;
     ted4_shape shape;
     ted4_draft d;
     size_t at;
 
-    ted4_walk_file_header(c, &declared);
+    /* R-CON-007: the lowest minor version that has the profile. */
+    ted4_walk_file_header(c, profile == TED4_PROFILE_MAIN ? 0 : COMPACT_MINOR, &profile, &declared);
     at = open_chunk(w, TED4_HEAD);
     if (c->error.code == TED4_OK)
         ted4_walk_header(c, &head, &shape, declared, UINT64_MAX);

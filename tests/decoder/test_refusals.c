@@ -180,7 +180,7 @@ static void file_header(void **state)
     expect("con.version", 8);
     f.header[9] = 200; /* a later minor version */
     expect("ok", 0);
-    f.header[10] = 1;
+    f.header[10] = 2;
     expect("unsupported.profile", 10);
     f.header[11] = 5;
     expect("con.level", 11);

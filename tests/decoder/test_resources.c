@@ -148,10 +148,11 @@ static int head_of(const uint8_t *data, size_t size, ted4_header *h, ted4_shape 
     ted4_reader r;
     ted4_chunk_place p;
     int before = -1;
+    uint8_t profile = 0;
 
     memset(h, 0, sizeof *h);
     ted4_reader_init(&r, data, 0, size, 1);
-    (void)ted4_container_header(&r);
+    (void)ted4_container_header(&r, &profile);
     p = ted4_container_judge(&r, &before);
     if (r.base.error.code != TED4_OK)
         return 0;

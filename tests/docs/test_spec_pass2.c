@@ -141,7 +141,11 @@ static void damaged_streams(void **state)
         random_source r = random_seed(1000 + seed);
         ted4_scene *s = random_scene(seed);
         size_t size;
-        uint8_t *data = encoded(s, &size), *copy = malloc(2 * size + 64);
+        uint8_t *data, *copy;
+
+        s->profile = seed % 2 ? TED4_PROFILE_COMPACT : TED4_PROFILE_MAIN;
+        data = encoded(s, &size);
+        copy = malloc(2 * size + 64);
 
         for (int i = 0; i < N_DAMAGES; i++) {
             memcpy(copy, data, size);

@@ -4,15 +4,11 @@ SPEC_ORDER = 04-notation annex-k-xxh3 annex-l-deflate 05-container 06-header 07-
         08-positions 09-entropy 10-attributes 12-arithmetic 11-reconstruction 13-levels \
         annex-m-pass2
 SPEC_CODE  = $(SPEC_ORDER:%=spec/%.md)
-SPEC_INC   = $(addprefix $B/inc/spec/,code.h head.inc levels.inc elements.inc compact.h)
+SPEC_INC   = $(addprefix $B/inc/spec/,code.h head.inc levels.inc elements.inc)
 
 $B/inc/spec/code.h: $(SPEC_CODE) tests/spec/code.awk
 	@mkdir -p $(@D)
 	awk -f tests/spec/code.awk $(SPEC_CODE) > $@.new && mv $@.new $@
-# The draft of annex N is apart: no decoder has it.
-$B/inc/spec/compact.h: spec/annex-n-compact.md tests/spec/code.awk
-	@mkdir -p $(@D)
-	awk -f tests/spec/code.awk $< > $@.new && mv $@.new $@
 $B/inc/spec/head.inc: spec/06-header.md tests/spec/head.awk
 	@mkdir -p $(@D)
 	awk -f tests/spec/head.awk $< > $@.new && mv $@.new $@

@@ -1,0 +1,50 @@
+#!/bin/sh
+# test_transcode.sh - ted4enc --transcode: a file goes from profile Main to Compact and comes back
+# byte for byte, with the same tiers on the way; a grid whose order is not that of profile Main is
+# sorted, with a warning; chunks that may be untrue are dropped; what is wrong is said. Prints lines
+# as a cmocka program does; run by `make test` from the project's root.
+# SPDX-License-Identifier: BSD-2-Clause
+set -u
+. tests/support/speak.sh
+need transcode ted4enc ted4dec ted4info
+enc=$TED4_BUILD/ted4enc
+dec=$TED4_BUILD/ted4dec
+vectors=conformance/vectors
+
+# Tiers of a file but T0, which are not a matter of the profile.
+tiers() { "$dec" --ted4-run "$1" --tiers T1,T2,T3,T4; }
+there() { "$enc" --transcode "$1" --profile compact -q -f -o "$out/c.ted4"; }
+back() { "$enc" --transcode "$out/c.ted4" --profile main -q -f -o "$out/m.ted4"; }
+
+for f in "$vectors"/content/CNT-pop-0.002.ted4 "$vectors"/content/CNT-still-0.008.ted4 \
+    "$vectors"/content/CNT-turn-0.008.ted4; do
+    name=$(basename "$f" .ted4)
+    there "$f" && tiers "$f" >"$out/before" && tiers "$out/c.ted4" >"$out/after" &&
+        cmp -s "$out/before" "$out/after" && ok "same_$name" || fail "same_$name" "other tiers"
+    back && cmp -s "$f" "$out/m.ted4" && ok "back_$name" || fail "back_$name" "other bytes"
+done
+there "$vectors/content/CNT-pop-0.002.ted4"
+[ "$(wc -c <"$out/c.ted4")" -lt "$(wc -c <"$vectors/content/CNT-pop-0.002.ted4")" ] &&
+    ok smaller || fail smaller "$(wc -c <"$out/c.ted4") bytes"
+expect named 0 'Compact profile' "$TED4_BUILD/ted4info" "$out/c.ted4"
+"$TED4_BUILD/ted4info" --validate "$out/c.ted4" >"$out/said" 2>&1
+grep -q adv.minor "$out/said" && fail minor "$(cat "$out/said")" || ok minor
+
+# Positions of a grid: the same Gaussians in another order.
+grid=$vectors/valid/compact/CMP-order.ted4
+expect sorted 0 'anchors are in another order' \
+    "$enc" --transcode "$grid" --profile main -q -f -o "$out/m.ted4"
+"$dec" --ted4-run "$grid" --tiers T1 >"$out/before"
+"$dec" --ted4-run "$out/m.ted4" --tiers T1 >"$out/after"
+cmp -s "$out/before" "$out/after" && fail reordered "the same order" || ok reordered
+expect reordered_valid 0 '"valid"' "$dec" --ted4-run "$out/m.ted4" --tiers T1
+
+ancillary=$vectors/valid/extension/EXT-many.ted4
+expect dropped 0 'unknown chunks are left out' \
+    "$enc" --transcode "$ancillary" --profile compact -q -f -o "$out/a.ted4"
+expect missing 3 'cannot be read' "$enc" --transcode "$out/none" -f -o "$out/a.ted4"
+expect broken 3 'not a TED4 file' "$enc" --transcode tests/support/speak.sh -f -o "$out/a.ted4"
+expect scene_too 3 'no scene folder' "$enc" scene --transcode "$grid" -f -o "$out/a.ted4"
+expect which_profile 3 'expected main or compact' "$enc" --profile small --transcode "$grid" \
+    -f -o "$out/a.ted4"
+exit $bad
