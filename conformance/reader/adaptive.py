@@ -107,7 +107,7 @@ def pattern_of(k, exponent):
     biased = size.bit_length() - 1 + exponent + 127
     if k == 0:
         return 0
-    if size >= 1 << 24 or not 1 <= biased <= 254:
+    if (size & -size) << 24 <= size or not 1 <= biased <= 254:
         return 0x7F800000
-    fraction = (size << 24 - size.bit_length()) & 0x7FFFFF
+    fraction = (size << 24 >> size.bit_length()) & 0x7FFFFF
     return (0x80000000 if k < 0 else 0) | biased << 23 | fraction

@@ -13,9 +13,14 @@ float ted4_weight_value(int32_t k, int exponent)
 
     if (k == 0)
         return ted4_bits_float(0);
-    if (length > TED4_WEIGHT_BITS || biased < 1 || biased > 254)
+    if (biased < 1 || biased > 254)
         return ted4_bits_float(0x7f800000);
-    size <<= TED4_WEIGHT_BITS - length;
+    if (length <= TED4_WEIGHT_BITS)
+        size <<= TED4_WEIGHT_BITS - length;
+    else if (size % ((uint32_t)1 << (length - TED4_WEIGHT_BITS)) == 0)
+        size >>= length - TED4_WEIGHT_BITS;
+    else
+        return ted4_bits_float(0x7f800000);
     return ted4_bits_float(sign | (uint32_t)biased << 23 | (size & 0x7fffff));
 }
 

@@ -11,13 +11,13 @@
 /* Exponents that a unit can have, and what is added to them in the file. */
 enum { EXPONENT_LEAST = -128, EXPONENT_MOST = 127 };
 
-/* Returns whether each of x[n] is an integer below 2^24 times 2^exponent. */
+/* Returns whether each of x[n] is an integer below 2^31 times 2^exponent. */
 static int fits(const float *x, size_t n, int exponent)
 {
     for (size_t i = 0; i < n; i++) {
         const int64_t k = ted4_rne_scaled(ted4_float_bits(x[i]), -exponent);
 
-        if (k <= -((int64_t)1 << TED4_WEIGHT_BITS) || k >= (int64_t)1 << TED4_WEIGHT_BITS ||
+        if (k < -INT32_MAX || k > INT32_MAX ||
             ted4_float_bits(ted4_weight_value((int32_t)k, exponent)) != ted4_float_bits(x[i]))
             return 0;
     }

@@ -6,7 +6,7 @@
 
 #include "norm/syntax.h"
 
-/* Sets b, a blob of s, to mode TED4_BLOB_CODED if all of its values are integers below 2^24 times
+/* Sets b, a blob of s, to mode TED4_BLOB_CODED if all of its values are integers below 2^31 times
  * the power of two of their unit, and if its bytes behind mode are then fewer than most. arena:
  * owns the exponents. Returns 1 if it did, else 0: then b is as before. */
 int ted4_blob_code(const ted4_scene *s, ted4_blob *b, ted4_arena *arena, size_t most);
