@@ -33,6 +33,7 @@ void ted4_edit_finish(ted4_edit *e)
 {
     for (size_t i = 0; i < e->n_added; i++)
         free(e->added[i].payload);
+    free(e->added);
     free(e->chunk);
     memset(e, 0, sizeof *e);
 }
@@ -53,9 +54,24 @@ size_t ted4_edit_drop(ted4_edit *e, const char *type)
     return n;
 }
 
+static int make_room(ted4_edit *e)
+{
+    const size_t room = 2 * e->room + 8;
+    ted4_edit_addition *added;
+
+    if (e->n_added < e->room)
+        return 0;
+    added = realloc(e->added, room * sizeof *added);
+    if (added == NULL)
+        return -1;
+    e->added = added;
+    e->room = room;
+    return 0;
+}
+
 int ted4_edit_add(ted4_edit *e, const char *type, uint32_t flags, uint8_t *payload, size_t size)
 {
-    if (e->n_added == TED4_EDIT_NEW || size > UINT32_MAX) {
+    if (size > UINT32_MAX || make_room(e) != 0) {
         free(payload);
         return -1;
     }

@@ -10,8 +10,6 @@
 #include "base/status.h"
 #include "tool/chunks.h"
 
-enum { TED4_EDIT_NEW = 8 }; /* most chunks that an edit can add */
-
 typedef struct {
     ted4_chunk_view view;
     int dropped; /* 1: not in the new file */
@@ -29,8 +27,8 @@ typedef struct {
     size_t size;
     ted4_edit_chunk *chunk; /* owned: [n], all chunks of the file */
     size_t n;
-    ted4_edit_addition added[TED4_EDIT_NEW];
-    size_t n_added;
+    ted4_edit_addition *added; /* owned: [n_added], room for `room` */
+    size_t n_added, room;
 } ted4_edit;
 
 /* Begins to edit a file that a decoder accepted. Returns 0, or -1 if out of memory. */
@@ -40,7 +38,7 @@ void ted4_edit_finish(ted4_edit *e);
 /* Drops ancillary chunks of a type; NULL: all of them. Returns how many. */
 size_t ted4_edit_drop(ted4_edit *e, const char *type);
 /* Adds an ancillary chunk before ENDS. payload is malloced, and owned by e from now on, also on
- * failure. Returns 0, or -1 if there are too many. */
+ * failure. Returns 0, or -1 if out of memory, or if size does not fit a chunk (5.2). */
 int ted4_edit_add(ted4_edit *e, const char *type, uint32_t flags, uint8_t *payload, size_t size);
 
 /* Sets lines of META: line[n] are "key=value" without a line feed. A line of the file with the same

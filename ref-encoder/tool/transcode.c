@@ -120,7 +120,7 @@ int ted4_transcode(const uint8_t *file, size_t size, int profile, const ted4_par
     if (*why != NULL)
         return -1;
     if (ted4_edit_begin(&edit, bare, bare_size) != 0 || add_chunks(&edit, file, size, dropped) != 0)
-        *why = "out of memory, or too many ancillary chunks";
+        *why = "out of memory";
     else
         (void)ted4_edit_write(&edit, out, out_size, why);
     ted4_edit_finish(&edit);

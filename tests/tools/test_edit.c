@@ -229,6 +229,30 @@ static void expect_refused(size_t at, uint32_t value)
     free(payload);
 }
 
+/* More chunks than any program adds by itself: transcoding adds all those of a file. */
+static void many_chunks_are_added_in_order(void **state)
+{
+    enum { MANY = 100 };
+    ted4_edit e;
+    ted4_chunk_view c;
+    size_t size, n = 0;
+    uint8_t *file = plain_file(&size), *out;
+
+    assert_int_equal(ted4_edit_begin(&e, file, size), 0);
+    for (uint8_t i = 0; i < MANY; i++)
+        assert_int_equal(ted4_edit_add(&e, "many", TED4_CHUNK_IS_SAFE, copied(&i, 1), 1), 0);
+    out = written(&e, &size);
+    for (size_t at = TED4_FILE_HEADER; ted4_chunks_next(out, size, &at, &c);)
+        if (strcmp(c.type, "many") == 0) {
+            assert_int_equal(c.size, 1);
+            assert_int_equal(c.payload[0], n++);
+        }
+    assert_int_equal(n, MANY);
+    free(out);
+    free(file);
+    (void)state;
+}
+
 /* R-EXT-008, one violation at a time, in the second camera. */
 static void broken_cameras_are_refused(void **state)
 {
@@ -295,6 +319,7 @@ int main(void)
         cmocka_unit_test(cameras_are_added_and_stripped),
         cmocka_unit_test(unknown_chunks_and_versions_stay),
         cmocka_unit_test(level_is_raised_where_needed),
+        cmocka_unit_test(many_chunks_are_added_in_order),
         cmocka_unit_test(broken_cameras_are_refused),
         cmocka_unit_test(chunks_end_with_the_file),
     };
