@@ -49,11 +49,6 @@ void conf_coded_blob(conf_bytes *payload, size_t head, const ted4_scene *s, ted4
         conf_line_bad(l, "the blob was not of mode 2");
     ted4_writer_init(&w);
     w.base.ops->number(&w.base, 1, TED4_BLOB_CODED);
-    if (blob == &s->nete)
-        ted4_walk_coded_nete(&w.base, s, blob);
-    else if (blob == &s->netr)
-        ted4_walk_coded_netr(&w.base, s, blob);
-    else
-        ted4_walk_coded_bank(&w.base, s, blob);
+    (void)ted4_walk_coded(&w.base, s, blob);
     replace(payload, head, &w, l);
 }

@@ -129,11 +129,9 @@ void ted4_walk_nete(ted4_coder *c, ted4_scene *s, struct ted4_prior *prior);
 /* b: s->netr or s->bank. */
 void ted4_walk_blob(ted4_coder *c, const char *element, const ted4_scene *s, ted4_blob *b);
 
-/* walk_coded.c - spec 7.6: the rest of a blob of mode 2, behind its mode. Returns the byte offset
- * of the substream, at which its errors are found. */
-size_t ted4_walk_coded_nete(ted4_coder *c, const ted4_scene *s, ted4_blob *b);
-size_t ted4_walk_coded_netr(ted4_coder *c, const ted4_scene *s, ted4_blob *b);
-size_t ted4_walk_coded_bank(ted4_coder *c, const ted4_scene *s, ted4_blob *b);
+/* walk_coded.c - spec 7.6: the rest of a blob of mode 2, behind its mode. b: s->nete, s->netr or
+ * s->bank. Returns the byte offset of the substream, at which its errors are found. */
+size_t ted4_walk_coded(ted4_coder *c, const ted4_scene *s, ted4_blob *b);
 
 /* walk_positions.c - spec 8. */
 void ted4_walk_positions(ted4_coder *c, ted4_scene *s);

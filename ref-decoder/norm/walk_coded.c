@@ -35,7 +35,7 @@ static void walk_layer_e(ted4_coder *c, const ted4_net_shape *n, unsigned layer,
         ted4_code_weights(c, &biases, -(shift[o] + f), x + out * in + o, 1);
 }
 
-size_t ted4_walk_coded_nete(ted4_coder *c, const ted4_scene *s, ted4_blob *b)
+static size_t walk_nete(ted4_coder *c, const ted4_scene *s, ted4_blob *b)
 {
     const size_t at = begin(c, b);
 
@@ -79,7 +79,7 @@ static void walk_layer_r(ted4_coder *c, const ted4_net_shape *n, unsigned layer,
     ted4_code_weights(c, &m, exponent[out] - EXPONENT_ZERO, x + out * in, out);
 }
 
-size_t ted4_walk_coded_netr(ted4_coder *c, const ted4_scene *s, ted4_blob *b)
+static size_t walk_netr(ted4_coder *c, const ted4_scene *s, ted4_blob *b)
 {
     const uint8_t *exponent = b->exponent;
     size_t at;
@@ -100,12 +100,11 @@ size_t ted4_walk_coded_netr(ted4_coder *c, const ted4_scene *s, ted4_blob *b)
     return at;
 }
 
-size_t ted4_walk_coded_bank(ted4_coder *c, const ted4_scene *s, ted4_blob *b)
+static size_t walk_bank(ted4_coder *c, ted4_blob *b)
 {
     ted4_integer_model m;
     size_t at;
 
-    (void)s;
     walk_exponents(c, b, 1);
     at = begin(c, b);
     ted4_integer_model_init(&m);
@@ -113,4 +112,11 @@ size_t ted4_walk_coded_bank(ted4_coder *c, const ted4_scene *s, ted4_blob *b)
         ted4_code_weights(c, &m, b->exponent[0] - EXPONENT_ZERO, b->values, b->n);
     c->ops->close(c);
     return at;
+}
+
+size_t ted4_walk_coded(ted4_coder *c, const ted4_scene *s, ted4_blob *b)
+{
+    return b == &s->nete   ? walk_nete(c, s, b)
+           : b == &s->netr ? walk_netr(c, s, b)
+                           : walk_bank(c, b);
 }

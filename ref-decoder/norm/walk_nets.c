@@ -11,14 +11,6 @@ typedef struct {
     size_t at, step;
 } value_offsets;
 
-/* Codes the values of mode 2. */
-static size_t walk_coded(ted4_coder *c, const ted4_scene *s, ted4_blob *b)
-{
-    return b == &s->nete   ? ted4_walk_coded_nete(c, s, b)
-           : b == &s->netr ? ted4_walk_coded_netr(c, s, b)
-                           : ted4_walk_coded_bank(c, s, b);
-}
-
 /* Codes the mode and the bytes of a blob. Returns the offsets of its values. */
 static value_offsets walk_bytes(ted4_coder *c, const char *element, const ted4_scene *s,
                                 ted4_blob *b)
@@ -38,7 +30,7 @@ static value_offsets walk_bytes(ted4_coder *c, const char *element, const ted4_s
         return v;
     }
     if (b->mode == TED4_BLOB_CODED) {
-        v.at = walk_coded(c, s, b);
+        v.at = ted4_walk_coded(c, s, b);
         return v;
     }
     c->ops->array(c, 4, b->values, b->n);

@@ -98,12 +98,7 @@ static int is_smaller(const ted4_scene *s, ted4_blob *b, size_t most)
     int smaller;
 
     ted4_writer_init(&w);
-    if (b == &s->nete)
-        ted4_walk_coded_nete(&w.base, s, b);
-    else if (b == &s->netr)
-        ted4_walk_coded_netr(&w.base, s, b);
-    else
-        ted4_walk_coded_bank(&w.base, s, b);
+    (void)ted4_walk_coded(&w.base, s, b);
     smaller = w.base.error.code == TED4_OK && w.out.size < most;
     ted4_writer_finish(&w);
     return smaller;

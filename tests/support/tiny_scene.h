@@ -144,6 +144,17 @@ static inline void tiny_add(tiny_string *s, const char *format, ...)
     must(s->n < sizeof s->text, "tiny_add");
 }
 
+/* Adds a frame to the list of a transforms_*.json: a picture without its extension, from a camera
+ * at (x, 0, z) that looks along -z. */
+static inline void tiny_frame(tiny_string *s, int is_first, const char *picture, double time, int x,
+                              int z)
+{
+    tiny_add(s,
+             "%s{\"file_path\": \"./%s\", \"time\": %.9f, \"transform_matrix\": "
+             "[[1,0,0,%d],[0,1,0,0],[0,0,1,%d],[0,0,0,1]]}",
+             is_first ? "" : ", ", picture, time, x, z);
+}
+
 /* A growing little-endian record. */
 typedef struct {
     uint8_t bytes[16384];

@@ -73,10 +73,7 @@ static void write_split(int test, const char *name)
             if (is_test(c, t) != test)
                 continue;
             snprintf(picture, sizeof picture, "c%d_%02d", c, t);
-            tiny_add(&s,
-                     "%s{\"file_path\": \"./%s\", \"time\": %.9f, \"transform_matrix\": "
-                     "[[1,0,0,%d],[0,1,0,0],[0,0,1,0],[0,0,0,1]]}",
-                     n++ > 0 ? ", " : "", picture, t / (TIMES - 1.0), c);
+            tiny_frame(&s, n++ == 0, picture, t / (TIMES - 1.0), c, 0);
             strcat(picture, ".png");
             write_picture(c, t, picture);
         }

@@ -48,10 +48,7 @@ static void write_split(int test, const char *name)
             if ((t % 4 == 2) != test)
                 continue;
             snprintf(picture, sizeof picture, "c%d_%02d", c, t);
-            tiny_add(&s,
-                     "%s{\"file_path\": \"./%s\", \"time\": %.9f, \"transform_matrix\": "
-                     "[[1,0,0,%d],[0,1,0,0],[0,0,1,%d],[0,0,0,1]]}",
-                     n++ > 0 ? ", " : "", picture, t / 31.0, c, c == MOVES ? t : 0);
+            tiny_frame(&s, n++ == 0, picture, t / 31.0, c, c == MOVES ? t : 0);
             strcat(picture, ".png");
             show(t, rgb);
             tiny_png(&folder, picture, TINY_W, TINY_H, PNG_FORMAT_RGB, rgb);
