@@ -1,5 +1,5 @@
-/* tiny_scene.h - writes scenes of a few pixels into a temporary folder for test_dataset*.c and
- * test_image_file.c. A failure to write ends the test program.
+/* tiny_scene.h - writes scenes of a few pixels into a temporary folder, for tests of what reads
+ * datasets. A failure to write ends the test program.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_TINY_SCENE_H
 #define TED4_TINY_SCENE_H

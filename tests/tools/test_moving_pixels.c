@@ -21,14 +21,16 @@ enum { LAMP_ON = 13 };
 static tiny_folder folder;
 static ted4_dataset data;
 
-/* The wall has another colour in each channel. The square differs from it in one of them. */
+/* The wall has another colour in each channel. The square differs from it in one of them: it is
+ * brighter and darker in turns. */
 static void show(int time, uint8_t rgb[3 * PIXELS])
 {
     for (int i = 0; i < 3 * PIXELS; i++)
         rgb[i] = (uint8_t)(WALL + 10 * (i % 3));
     for (int y = 0; y < SIDE; y++)
         for (int x = 0; x < SIDE; x++)
-            rgb[3 * ((y + time / 4 % 4 * SIDE) * TINY_W + x + time % 4 * SIDE) + 1] = 200;
+            rgb[3 * ((y + time / 4 % 4 * SIDE) * TINY_W + x + time % 4 * SIDE) + 1] =
+                time % 2 == 0 ? 200 : 5;
     if (time < LAMP_ON)
         rgb[3 * PIXELS - 1] = 255;
 }
