@@ -4,6 +4,8 @@
 #include <stdio.h>
 #include <zlib.h>
 #include "corpus.h"
+#include "norm/coded_weights.h"
+#include "norm/octree.h"
 #include "random_scene.h"
 #include "tool/cams.h"
 #include "write/coder_write.h"
@@ -60,6 +62,13 @@ static const struct {
     SEED("masks", "dynamic", 303, "\4\0\1\2"),
     SEED("masks", "contradicting", 304, "\4\0\1\1\40\0\3\0"),
     SEED("masks", "beyond", 305, "\4\0\0\1\40\0\3\0"),
+    SEED("masks", "compact", 306, "\4\0\1\1\40\0\0\3"),
+    SEED("encode", "compact", 64, "\2\1"),
+    SEED("encode", "compact_escapes", 65, "\3\7"),
+    SEED("coded", "tree", 200, "\0\0\40\0"),
+    SEED("coded", "fine_tree", 201, "\0\7\40\0"),
+    SEED("coded", "integers", 202, "\2\40"),
+    SEED("coded", "weights", 203, "\4\40\360\0"),
     SEED("inflate", "values", 300, "\1"),
 #undef SEED
 };
@@ -116,6 +125,39 @@ static void substream(void)
     w.base.ops->close(&w.base);
     memcpy(data + n, w.out.data + 4, w.out.size - 4);
     corpus_write("rans", "substream", data, n + w.out.size - 4);
+    ted4_writer_finish(&w);
+}
+
+/* Odd kinds of fz_coded.c: substreams of a tree of two leaves, 6 bits deep, of integers and of
+ * weights of exponent -8. */
+static void adaptive(int kind)
+{
+    uint16_t p[6] = { 0, 0, 0, 0x3400, 0x3800, 0xb800 };
+    float x[20];
+    uint8_t data[MOST] = { (uint8_t)kind, kind == 1 ? 0 : 19, kind == 1 ? 1 : 248 };
+    uint32_t size;
+    ted4_integer_model m;
+    ted4_writer w;
+
+    ted4_integer_model_init(&m);
+    ted4_writer_init(&w);
+    w.base.ops->sizes(&w.base, &size, 1);
+    w.base.ops->open(&w.base, 1);
+    for (int i = 0; i < 20; i++)
+        x[i] = (float)(i * i * i % 100 - 40) / 256;
+    if (kind == 1)
+        (void)ted4_octree_walk(&w.base, 6, 2, p);
+    else if (kind == 5)
+        ted4_code_weights(&w.base, &m, -8, x, 20);
+    for (unsigned i = 0; kind == 3 && i < 20; i++)
+        (void)ted4_code_integer(&w.base, &m, (248 + i) % TED4_INTEGER_LENGTHS, (int32_t)(i << i));
+    w.base.ops->close(&w.base);
+    memcpy(data + 4, w.out.data + 4, w.out.size - 4);
+    corpus_write("coded",
+                 kind == 1   ? "tree_substream"
+                 : kind == 3 ? "integers_substream"
+                             : "weights_substream",
+                 data, w.out.size);
     ted4_writer_finish(&w);
 }
 
@@ -180,6 +222,9 @@ void corpus_units(void)
         any(anything[i].group, anything[i].name, anything[i].size, anything[i].first,
             anything[i].n);
     substream();
+    adaptive(1);
+    adaptive(3);
+    adaptive(5);
     cameras();
     positions();
     deflated();

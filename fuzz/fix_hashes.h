@@ -13,9 +13,9 @@ void ted4_fix_hashes(uint8_t *data, size_t size);
 /* Corrects the hash in ENDS (spec 5.4) and that of its chunk, if nothing else is wrong with the
  * file. */
 void ted4_fix_rans_ends(uint8_t *data, size_t size);
-/* Makes a valid file (spec 9.2) from one whose TILE payloads hold arbitrary bytes: the symbols
- * decoded from them are coded again. Ancillary chunks are left out. Returns the new size, at most
- * max_size; or size, with nothing changed, if there is no such file or it is larger than
+/* Makes a valid file (spec 9.2) from one whose substreams hold arbitrary bytes (see parse.h): the
+ * symbols decoded from them are coded again. Ancillary chunks are left out. Returns the new size,
+ * at most max_size; or size, with nothing changed, if there is no such file or it is larger than
  * max_size. */
 size_t ted4_fix_range_codes(uint8_t *data, size_t size, size_t max_size);
 

@@ -18,7 +18,7 @@ FUZZ_ALLOC    = -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=free
 FUZZ_NO_VIDEO = -Wl,--wrap=ted4_video_unpack
 FUZZ_SEEN     = -Wl,--wrap=inflate,--wrap=compress2,--wrap=uncompress2
 
-FUZZ_OBJ      = $(patsubst %.c,$B/%.o,fuzz/fix_hashes.c fuzz/parse.c)
+FUZZ_OBJ      = $(patsubst %.c,$B/%.o,fuzz/fix_hashes.c fuzz/parse.c fuzz/places.c)
 # A harness links what it looks at, so that a build for one kind of instrumentation stays small:
 # decoder and writer; readers of scenes too; or all.
 FUZZ_CODEC    = $(patsubst %.c,$B/%.o,$(DEC_SRC) \
@@ -26,7 +26,7 @@ FUZZ_CODEC    = $(patsubst %.c,$B/%.o,$(DEC_SRC) \
 FUZZ_SCENE    = $(patsubst %.c,$B/%.o,$(wildcard ref-encoder/data/*.c) \
                 $(addprefix ref-decoder/tool/,camera_list.c camera_transforms.c read_file.c) \
                 ref-decoder/tool/times.c fuzz/scene_folder.c)
-FUZZ_MUTATE   = $B/fuzz/mutate.o $B/fuzz/fields.o
+FUZZ_MUTATE   = $(patsubst %,$B/fuzz/%.o,mutate mutate_scene fields)
 # Inputs that are .ted4 files have a mutator that knows them.
 FUZZ_FILES    = decode decode_chunked editor roundtrip recon alloc_fail dump validate lenient \
                 two_decoders

@@ -1,15 +1,33 @@
-/* fz_encode.c - a scene made from the input: the first 8 bytes seed a random scene, and every 4
- * further bytes replace one symbol. Claims: the decoder accepts what the encoder accepts, with the
- * same integers, and the encoder writes the result again as the same bytes; the level declared is
- * the lowest whose bounds hold (spec 13), and with a lower level the encoder refuses to write and
- * the decoder to read; the number of ideal bits is at most that of the bits written.
- * SPDX-License-Identifier: BSD-2-Clause */
+/* fz_encode.c - a scene made from the input: the first 8 bytes seed a random scene, of profile
+ * Compact if bit 1 is set, and every 4 further bytes replace one symbol. Claims: the decoder
+ * accepts what the encoder accepts, with the same integers, and the encoder writes the result again
+ * as the same bytes; the level declared is the lowest whose bounds hold (spec 13), and with a lower
+ * level the encoder refuses to write and the decoder to read; the number of ideal bits is at most
+ * that of the bits written. SPDX-License-Identifier: BSD-2-Clause */
 #include "harness.h"
 #include "fix_hashes.h"
 #include "norm/coder.h"
 #include "random_scene.h"
 
-enum { LEVEL_BYTE = 11 };
+enum { LEVEL_BYTE = 11, COMPACT = 2 };
+
+/* Places are restored in profile Compact, as are weights, in whichever mode they were written. */
+static void check_rest(const ted4_scene *s, const ted4_scene *read)
+{
+    const ted4_blob *const was[] = { &s->nete, &s->netr, &s->bank };
+    const ted4_blob *const is[] = { &read->nete, &read->netr, &read->bank };
+
+    fuzz_require(read->profile == s->profile &&
+                     (s->profile == TED4_PROFILE_MAIN || read->grid == s->grid),
+                 "the same profile and grid");
+    fuzz_require(memcmp(read->position, s->position, 6 * (size_t)s->head.n_anchors) == 0,
+                 "the same positions");
+    for (int i = 0; i < 3; i++)
+        fuzz_require(was[i]->n == is[i]->n &&
+                         (was[i]->n == 0 || memcmp(was[i]->values, is[i]->values,
+                                                   (size_t)was[i]->n * sizeof(float)) == 0),
+                     "the same weights");
+}
 
 /* Replaces symbols. Place and value take 16 bits each; places cycle through the types and the
  * symbols of each type. */
@@ -76,6 +94,7 @@ static void there_and_back(const ted4_scene *s)
                          memcmp(read->symbol[t], s->symbol[t],
                                 (size_t)2 * s->shape.dim[t] * s->head.n_anchors) == 0,
                      "the same symbols");
+    check_rest(s, read);
     fuzz_require(ted4_encode(read, read->level, NULL, &second, &n_second, NULL) == TED4_OK &&
                      n_second == n_first && memcmp(first, second, n_first) == 0,
                  "the same bytes");
@@ -98,7 +117,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     h.n_anchors = 1 + h.n_anchors % 80; /* for speed; this is enough for two tiles */
     if (data[7] & 1)
         h.frames = 1u << (data[7] >> 1 & 31); /* can exceed the first level */
-    s = random_scene_of(&r, &h, data[0] & 1);
+    if (data[0] & COMPACT)
+        s = random_compact_of(&r, &h, data[0] & 1, data[1] % 8 < 7 ? 6 + data[1] % 8 : 16);
+    else
+        s = random_scene_of(&r, &h, data[0] & 1);
     if (s == NULL)
         return 0;
     place_symbols(s, data + 8, size - 8);

@@ -3,7 +3,7 @@
  * even; ted4_prior_load() gives the same verdict and the same place of the failure as the rules
  * R-NET-002 to R-NET-006, applied in that order with exact numbers; values returned by ted4_snap()
  * for any input are accepted, and evaluate to the same bounded numbers with the plain layers and
- * with this machine's.
+ * with this machine's; profile Compact can code them as integers (spec 7.6), which are read back.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <string.h>
@@ -11,6 +11,8 @@
 #include "harness.h"
 #include "kernel/int_kernel.h"
 #include "norm/prior.h"
+#include "read/reader.h"
+#include "write/coder_write.h"
 #include "write/snap.h"
 
 enum { MAX_VALUES = 4096 };
@@ -202,6 +204,36 @@ static void evaluate(fuzz_source *in, const nets *n, ted4_prior *prior)
     }
 }
 
+/* The substream has at least a bit a value (R-ENT-016). */
+static void in_compact(nets *n, ted4_prior *prior)
+{
+    static nets back;
+    ted4_scene s = { .head = n->h, .shape = n->shape, .profile = TED4_PROFILE_COMPACT }, t;
+    ted4_writer w;
+    ted4_reader r;
+
+    back = *n;
+    memset(back.value, 0, sizeof back.value);
+    memset(back.shift, 0, sizeof back.shift);
+    s.nete = (ted4_blob) { .values = n->value, .n = n->shape.n_nete, .mode = TED4_BLOB_CODED };
+    s.shift = n->shift;
+    t = s;
+    t.nete.values = back.value;
+    t.shift = back.shift;
+    ted4_writer_init(&w);
+    ted4_walk_nete(&w.base, &s, prior);
+    if (w.base.error.code == TED4_OK) {
+        ted4_reader_init(&r, w.out.data, 0, w.out.size, 0);
+        ted4_walk_nete(&r.base, &t, prior);
+        fuzz_require(r.base.error.code == TED4_OK && r.base.pos == w.out.size &&
+                         t.nete.mode == TED4_BLOB_CODED && memcmp(n, &back, sizeof back) == 0,
+                     "the same weights in profile Compact");
+    } else {
+        fuzz_require(w.base.error.code == TED4_E_ENT_SIZE, "written in profile Compact");
+    }
+    ted4_writer_finish(&w);
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     static nets n;
@@ -223,6 +255,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     fuzz_require(e.code == want.code && e.offset == want.offset, "the first value that breaks one");
     ted4_snap_coarse(&n.h, &n.shape, fuzz_u8(&in) % 21, n.value, n.shift);
     fuzz_require(ted4_prior_load(&prior, n.value, n.shift, NULL) == TED4_OK, "snapped values");
+    in_compact(&n, &prior);
     evaluate(&in, &n, &prior);
     ted4_arena_finish(&arena);
     return 0;

@@ -1,15 +1,15 @@
 /* fz_masks.c - masks of a scene (spec 9.3): u8 offsets K, u8 which masks exist, u8 anchors, u8
- * probabilities given or counted, then masks. Claims: masks that a header allows are written and
- * read back; masks that contradict it (an offset beyond K, a mask that is not coded and differs
- * from the implied one) are refused by the writer, never written; a tile whose mask substream is
- * replaced by any other bytes is refused, or is written again as the same bytes.
- * SPDX-License-Identifier: BSD-2-Clause */
+ * probabilities given or counted (bit 1: of a file of profile Compact), then masks. Claims: masks
+ * that a header allows are written and read back; masks that contradict it (an offset beyond K, a
+ * mask that is not coded and differs from the implied one) are refused by the writer, never
+ * written; a tile whose mask substream is replaced by any other bytes is refused, or is written
+ * again as the same bytes. SPDX-License-Identifier: BSD-2-Clause */
 #include "harness.h"
 #include "fix_hashes.h"
 #include "norm/coder.h"
 #include "random_scene.h"
 
-enum { MAX_N = 150 };
+enum { MAX_N = 150, GIVEN = 1, COMPACT = 2 };
 
 static ted4_header header_of(fuzz_source *in)
 {
@@ -35,7 +35,7 @@ static ted4_header header_of(fuzz_source *in)
 /* Copies the masks from the input unchecked. Returns 1 if the header allows them. */
 static int take_masks(fuzz_source *in, ted4_scene *s)
 {
-    const int wild = (fuzz_u8(in) & 3) == 3, given = fuzz_u8(in) & 1;
+    const int wild = (fuzz_u8(in) & 3) == 3, knob = fuzz_u8(in);
     const uint16_t all = (uint16_t)((1u << s->head.n_offsets) - 1);
     int legal = 1;
 
@@ -51,7 +51,8 @@ static int take_masks(fuzz_source *in, ted4_scene *s)
         legal = legal && s->dynamic[i] <= s->head.temporal_mask && s->offset_bits[i] <= all &&
                 (s->head.offset_mask || s->offset_bits[i] == all);
     }
-    for (size_t i = 0; given && i < s->shape.n_tiles * (size_t)TED4_PROBS; i++)
+    s->profile = knob & COMPACT ? TED4_PROFILE_COMPACT : TED4_PROFILE_MAIN;
+    for (size_t i = 0; (knob & GIVEN) && i < s->shape.n_tiles * (size_t)TED4_PROBS; i++)
         s->prob[i] = (uint16_t)(1 + fuzz_u16(in) % 65535);
     return legal;
 }

@@ -1,14 +1,17 @@
 /* fz_positions.c - a POSN payload (spec 8): binary16 patterns, three per anchor. Claims: the
  * reading walk gives the same verdict and place as a literal implementation of the rules (values as
  * long doubles, Morton codes bit by bit); what it accepts is written as the same bytes; if all
- * values are legal, the same anchors are accepted after ted4_positions_sort(); the conversion of
- * binary16 to X and binary32 is exact, and reversible.
- * SPDX-License-Identifier: BSD-2-Clause */
+ * values are legal, the same anchors are accepted after ted4_positions_sort(), and can be written
+ * and read in profile Compact, as can the nearest ones of every grid; the conversion of binary16 to
+ * X and binary32 is exact, and reversible; places of a grid stand for the coordinates of 8.2, and
+ * coordinates beside it have none. SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <string.h>
 #include "harness.h"
 #include "norm/scene.h"
+#include "places.h"
 #include "read/reader.h"
+#include "write/coded.h"
 #include "write/coder_write.h"
 #include "write/snap.h"
 
@@ -79,6 +82,55 @@ static void write_again(const uint8_t *bytes, uint16_t *p, size_t n)
     ted4_writer_finish(&w);
 }
 
+static int is_place(long double x, unsigned grid)
+{
+    const long double scaled = ldexpl(x + 1, (int)grid - 1);
+
+    return scaled == floorl(scaled) && scaled >= 0 && scaled < ldexpl(1, (int)grid);
+}
+
+static void check_places(uint16_t h)
+{
+    for (unsigned grid = 6; grid <= 16; grid += grid == 12 ? 4 : 1) {
+        const uint32_t place = ted4_grid_place(h, grid);
+
+        if (grid < 16)
+            fuzz_require(is_place(value(h), grid) == (place != UINT32_MAX), "a place of the grid");
+        if (place == UINT32_MAX)
+            continue;
+        fuzz_require(ted4_grid_half(place, grid) == h, "and back");
+        if (grid < 16)
+            fuzz_require(value(h) == ldexpl(place, 1 - (int)grid) - 1, "its coordinate");
+    }
+}
+
+/* The payload of profile Compact. A substream has at least a bit an anchor (R-ENT-016). */
+static void in_compact(uint16_t *p, size_t n)
+{
+    static uint16_t back[3 * MAX_N];
+    ted4_scene s = { .head = { .n_anchors = (uint32_t)n },
+                     .profile = TED4_PROFILE_COMPACT,
+                     .position = p },
+               t = s;
+    ted4_writer w;
+    ted4_reader r;
+
+    s.grid = (uint8_t)ted4_coarsest_grid(p, n);
+    t.position = back;
+    ted4_writer_init(&w);
+    ted4_walk_positions(&w.base, &s);
+    if (w.base.error.code == TED4_OK) {
+        ted4_reader_init(&r, w.out.data, 0, w.out.size, 0);
+        ted4_walk_positions(&r.base, &t);
+        fuzz_require(r.base.error.code == TED4_OK && t.grid == s.grid &&
+                         memcmp(back, p, 6 * n) == 0,
+                     "the same positions in profile Compact");
+    } else {
+        fuzz_require(w.base.error.code == TED4_E_ENT_SIZE, "written in profile Compact");
+    }
+    ted4_writer_finish(&w);
+}
+
 static void sort_them(const uint16_t *p, size_t n)
 {
     static uint16_t sorted[3 * MAX_N];
@@ -93,8 +145,13 @@ static void sort_them(const uint16_t *p, size_t n)
         legal = legal && expected(sorted + i - i % 3, 1).code == TED4_OK;
         ted4_store16(bytes + 2 * i, sorted[i]);
     }
-    if (legal && kept > 0)
-        fuzz_require(walk(bytes, sorted, kept).code == TED4_OK, "sorted anchors are in order");
+    if (!legal || kept == 0)
+        return;
+    fuzz_require(walk(bytes, sorted, kept).code == TED4_OK, "sorted anchors are in order");
+    in_compact(sorted, kept);
+    for (unsigned grid = 6; grid <= 12; grid++)
+        if (fuzz_settle(sorted, kept, grid))
+            in_compact(sorted, kept);
 }
 
 static void convert(uint16_t h)
@@ -106,8 +163,11 @@ static void convert(uint16_t h)
     fuzz_require((long double)v == value(h) && (signbit(v) != 0) == h >> 15,
                  "binary16 to binary32");
     fuzz_require(ted4_float_to_half(v) == h, "and back");
-    if (fabsl(value(h)) <= 1)
-        fuzz_require((long double)ted4_half_q24(h) == ldexpl(value(h), 24), "X is exact");
+    if (fabsl(value(h)) > 1)
+        return;
+    if (h != 0x8000)
+        check_places(h);
+    fuzz_require((long double)ted4_half_q24(h) == ldexpl(value(h), 24), "X is exact");
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)

@@ -51,7 +51,8 @@ static int soon(const uint8_t *data, size_t size)
     ted4_walk_header(&r.base, &h, &shape, TED4_LEVEL_UNBOUNDED, UINT64_MAX);
     if (r.base.error.code != TED4_OK)
         return 1;
-    n = h.n_anchors <= size / 6 ? h.n_anchors : 0; /* otherwise there are no positions */
+    /* Otherwise there are no positions (R-CON-011, R-ENT-016). */
+    n = h.n_anchors <= (profile == TED4_PROFILE_MAIN ? size / 6 : 8 * size) ? h.n_anchors : 0;
     return n * ted4_count_products(&h, &shape) +
                SEARCH * n * (ted4_count_symbols(&h, &shape) / h.n_anchors) <=
            patience;

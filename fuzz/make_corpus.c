@@ -68,9 +68,57 @@ static void moving(ted4_header *h, uint8_t motion)
 static const char *const name[] = { "smallest",   "masks",       "inr",       "slices",
                                     "bank",       "bank_mask",   "concat",    "motion_inr",
                                     "activation", "view_colour", "view_full", "linear",
-                                    "two_tiles",  "escapes",     "deflated",  "meta" };
+                                    "two_tiles",  "escapes",     "deflated",  "meta",
+                                    "grid",       "tree",        "coded",     "coded_moving",
+                                    "both_modes", "exponents",   "leaves",    "coded_tiles" };
 
-enum { N_FILES = sizeof name / sizeof *name };
+/* The first of them that is of profile Compact, and its successors in the list. */
+enum {
+    N_FILES = sizeof name / sizeof *name,
+    GRID = 16,
+    TREE,
+    CODED,
+    CODED_MOVING,
+    BOTH_MODES,
+    EXPONENTS,
+    LEAVES,
+    CODED_TILES
+};
+
+/* Sets what a file of profile Compact uses of the header. */
+static void compact(ted4_header *h, int i)
+{
+    switch (i) {
+    case TREE: h->offset_mask = 1; break;
+    case CODED:
+        inr_prior(h);
+        slices(h);
+        h->view = TED4_VIEW_COLOUR;
+        h->head_layers = 1;
+        h->head_width = 2;
+        break;
+    case CODED_MOVING:
+        moving(h, TED4_MOTION_BANK);
+        h->temporal_mask = h->activation = 1;
+        break;
+    case BOTH_MODES:
+        moving(h, TED4_MOTION_CONCAT);
+        slices(h);
+        break;
+    case LEAVES:
+        h->n_anchors = 64;
+        h->feature_dim = h->slice[0] = h->n_offsets = 1;
+        break;
+    case CODED_TILES:
+        h->n_anchors = 67;
+        h->n_offsets = 1;
+        h->feature_dim = h->slice[0] = 1;
+        moving(h, TED4_MOTION_INR);
+        h->temporal_mask = 1;
+        break;
+    default: break;
+    }
+}
 
 static ted4_header header_of(int i)
 {
@@ -119,7 +167,7 @@ static ted4_header header_of(int i)
         h.activation = 1;
         h.context_bits = 12;
         break;
-    default: break;
+    default: compact(&h, i); break;
     }
     return h;
 }
@@ -144,17 +192,57 @@ static size_t add_meta(uint8_t *data, size_t size)
     return size + whole;
 }
 
+/* Makes the weights multiples of the least and the largest power of two that a unit can have, and
+ * lets them have as many significant bits as an integer can. */
+static void extreme_units(ted4_scene *s)
+{
+    for (size_t i = 0; i < s->netr.n; i++)
+        s->netr.values[i] = i % 2 ? 0x1p-126f : 0x1.fffffep-104f;
+    s->netr.values[0] = -0x1p127f;
+}
+
+/* Makes the positions a solid block: every node of the two lowest levels has all children. */
+static void solid(ted4_scene *s)
+{
+    for (size_t i = 0; i < 3 * (size_t)s->head.n_anchors; i++) {
+        const uint32_t x = ted4_gather3(i / 3 >> (2 - i % 3));
+
+        s->position[i] = ted4_grid_half(x + 32, s->grid);
+    }
+    (void)ted4_scene_steps(s, NULL, NULL);
+}
+
+static ted4_scene *scene_of(int i, random_source *r)
+{
+    static const uint8_t grid[] = { 6, 16, 12, 9, 16, 7, 6, 8 };
+    const ted4_header h = header_of(i);
+    ted4_scene *const s = i < GRID ? random_scene_of(r, &h, i == 13)
+                                   : random_compact_of(r, &h, i == TREE, grid[i - GRID]);
+
+    if (s == NULL)
+        return NULL;
+    for (size_t j = 0; i == 14 && j < s->netr.n; j++)
+        s->netr.values[j] = 0.25f;
+    if (i == BOTH_MODES) {
+        s->netr.mode = TED4_BLOB_RAW;
+        for (size_t j = 0; j < s->bank.n; j++)
+            s->bank.values[j] = 0.1f; /* deflates better */
+    }
+    if (i == EXPONENTS)
+        extreme_units(s);
+    if (i == LEAVES)
+        solid(s);
+    return s;
+}
+
 static int write_file(int i)
 {
     random_source r = random_seed((uint64_t)i);
-    const ted4_header h = header_of(i);
-    ted4_scene *s = random_scene_of(&r, &h, i == 13);
+    ted4_scene *s = scene_of(i, &r);
     uint8_t data[MAX_FILE], *out = NULL;
     size_t size = 0;
     char file[64];
 
-    for (size_t j = 0; i == 14 && s != NULL && j < s->netr.n; j++)
-        s->netr.values[j] = 0.25f;
     if (s == NULL || ted4_encode(s, 0, NULL, &out, &size, NULL) != TED4_OK || size > MAX_FILE / 2)
         return 0;
     memcpy(data, out, size);
@@ -183,8 +271,8 @@ static size_t flip_bits(uint8_t *data, size_t size, size_t max_size)
 }
 
 /* Writes changed files: for each verdict by which the decoder refuses a file, the first one found
- * that gets it. */
-static void write_refused(void)
+ * that gets it, of the files from first to end. */
+static void write_refused(int first, int end, const char *prefix)
 {
     enum { TRIES = 30000 };
     int met[TED4_N_STATUS] = { 1 };
@@ -196,7 +284,8 @@ static void write_refused(void)
         FILE *f;
         size_t size;
 
-        (void)snprintf(path, sizeof path, "%s/ted4/%s.ted4", corpus_folder, name[seed % N_FILES]);
+        (void)snprintf(path, sizeof path, "%s/ted4/%s.ted4", corpus_folder,
+                       name[first + (int)seed % (end - first)]);
         f = fopen(path, "rb");
         size = f != NULL ? fread(data, 1, MAX_FILE, f) : 0;
         if (f != NULL)
@@ -210,7 +299,7 @@ static void write_refused(void)
         if (met[verdict] || size > 2000)
             continue;
         met[verdict] = 1;
-        (void)snprintf(file, sizeof file, "refused.%s.ted4", ted4_status_id(verdict));
+        (void)snprintf(file, sizeof file, "%s.%s.ted4", prefix, ted4_status_id(verdict));
         corpus_write("knobs", file, data, size);
     }
 }
@@ -256,7 +345,8 @@ int main(int argc, char **argv)
             fprintf(stderr, "make_corpus: %s failed\n", name[i]);
             return 3;
         }
-    write_refused();
+    write_refused(0, GRID, "refused");
+    write_refused(GRID, N_FILES, "refused_compact");
     write_two_tiles();
     corpus_units();
     corpus_scenes();

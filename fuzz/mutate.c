@@ -4,37 +4,19 @@
 
 #include "fields.h"
 #include "fix_hashes.h"
+#include "mutate_scene.h"
 #include "norm/coder.h"
 #include "parse.h"
-#include "random_scene.h"
 
-enum { MAX_FIELDS = 1 << 13, MAX_TAIL = 32, ONE_STALE_OF = 16 };
+enum { MAX_FIELDS = 1 << 13, MAX_TAIL = 32, ONE_STALE_OF = 16, PROFILE_BYTE = 10 };
 
 /* A file that is being changed. */
 typedef struct {
     uint8_t *data;
     size_t size, max_size;
     random_source r;
-    int coded; /* bytes of a TILE were changed */
+    int coded; /* bytes of a substream may have been changed */
 } file;
-
-/* Returns a number that is a bound of an element in the specification, of an integer type, or of
- * binary32. */
-static uint64_t boundary(random_source *r)
-{
-    static const uint64_t bound[] = {
-        0,          1,          2,          3,          4,          7,          8,
-        10,         12,         16,         20,         30,         31,         32,
-        64,         127,        128,        240,        255,        256,        512,
-        600,        3600,       4096,       8192,       16384,      32767,      32768,
-        36000,      65535,      65536,      1 << 18,    1 << 20,    1 << 22,    (1 << 24) - 1,
-        1 << 24,    0x7fffffff, 0x80000000, 0xffffffff, 0x3c00,     0x7c00,     0x35800000,
-        0x44800000, 0x00800000, 0x007fffff, 0x7f7fffff, 0x7f800000, 0x7fc00000, 0xff7fffff,
-        0x3f800000, UINT64_MAX
-    };
-
-    return bound[random_in(r, 0, sizeof bound / sizeof *bound - 1)] + random_in(r, 0, 2) - 1;
-}
 
 static uint64_t load(const uint8_t *p, unsigned width)
 {
@@ -69,73 +51,9 @@ static void change_field(file *f)
     case 1: v -= 1; break;
     case 2: v ^= (uint64_t)1 << random_in(&f->r, 0, 8 * x->width - 1); break;
     case 3: v = load(f->data + y->at, y->width); break;
-    default: v = boundary(&f->r); break;
+    default: v = fuzz_boundary(&f->r); break;
     }
     store(f->data + x->at, x->width, v);
-}
-
-/* Returns a legal binary32 of any magnitude, extremes included. */
-static float any_value(random_source *r)
-{
-    const uint32_t bits = random_in(r, 0, 2) ? (uint32_t)boundary(r) : random_u32(r);
-
-    return ted4_float_legal(bits) ? ted4_bits_float(bits) : (float)random_normal(r);
-}
-
-static void change_values(random_source *r, ted4_blob *b)
-{
-    if (b->n == 0)
-        return;
-    b->values[random_in(r, 0, (uint32_t)b->n - 1)] = any_value(r);
-    b->mode = random_in(r, 0, 1) ? TED4_BLOB_RAW : TED4_BLOB_AUTO;
-}
-
-static void change_symbol(random_source *r, ted4_scene *s)
-{
-    const int t = (int)random_in(r, 0, TED4_TYPES - 1);
-    const size_t n = (size_t)s->shape.dim[t] * s->head.n_anchors;
-    int16_t *k;
-
-    if (n == 0)
-        return;
-    k = &s->symbol[t][random_in(r, 0, (uint32_t)n - 1)];
-    *k = (int16_t)(random_in(r, 0, 1) ? ted4_sat16((int32_t)boundary(r))
-                                      : *k + (int)random_in(r, 0, 8) - 4);
-    *k = *k == INT16_MIN ? -INT16_MAX : *k;
-}
-
-/* Changes header elements that do not determine any shape. */
-static void change_world(random_source *r, ted4_header *h)
-{
-    switch (random_in(r, 0, 4)) {
-    case 0:
-        h->step[random_in(r, 0, TED4_TYPES - 1)] = ldexpf(1, (int)random_in(r, 0, 30) - 20);
-        break;
-    case 1: h->origin[random_in(r, 0, 2)] = any_value(r); break;
-    case 2: h->exponent = (int8_t)((int)random_in(r, 0, 60) - 30); break;
-    case 3: h->scale_domain ^= 1; break;
-    default: h->frames = random_in(r, 1, 64); break;
-    }
-}
-
-static void change_masks(random_source *r, ted4_scene *s)
-{
-    const uint32_t a = random_in(r, 0, s->head.n_anchors - 1);
-
-    if (s->head.temporal_mask)
-        s->dynamic[a] ^= 1;
-    if (s->head.offset_mask)
-        s->offset_bits[a] ^= (uint16_t)(1u << random_in(r, 0, s->head.n_offsets - 1u));
-    s->prob[random_in(r, 0, s->shape.n_tiles * TED4_PROBS - 1)] =
-        random_in(r, 0, 1) ? 1 : (uint16_t)random_in(r, 1, 65535);
-}
-
-/* Weights of Tier E must lie on the grid, and the steps depend on them. */
-static void change_prior(random_source *r, ted4_scene *s)
-{
-    change_values(r, &s->nete);
-    ted4_snap_coarse(&s->head, &s->shape, (int)random_in(r, 0, 20), s->nete.values, s->shift);
-    (void)ted4_scene_steps(s, NULL, NULL);
 }
 
 /* Parses the file, changes some of the scene, and writes it again. */
@@ -147,16 +65,7 @@ static void change_scene(file *f)
 
     if (s == NULL)
         return;
-    for (uint32_t i = random_in(&f->r, 1, 4); i > 0; i--)
-        switch (random_in(&f->r, 0, 5)) {
-        case 0: change_values(&f->r, &s->netr); break;
-        case 1: change_values(&f->r, &s->bank); break;
-        case 2: change_world(&f->r, &s->head); break;
-        case 3: change_masks(&f->r, s); break;
-        case 4: change_prior(&f->r, s); break;
-        default: change_symbol(&f->r, s); break;
-        }
-    random_tidy(s);
+    fuzz_change_scene(&f->r, s);
     if (ted4_encode(s, 0, NULL, &out, &n, NULL) == TED4_OK && n <= f->max_size) {
         memcpy(f->data, out, n);
         f->size = n;
@@ -168,13 +77,10 @@ static void change_scene(file *f)
 /* Replaces the file by another scene with any header. */
 static void make_scene(file *f)
 {
-    ted4_header h = random_header(&f->r);
-    ted4_scene *s;
+    ted4_scene *const s = fuzz_any_scene(&f->r);
     uint8_t *out = NULL;
     size_t n = 0;
 
-    h.n_anchors = random_in(&f->r, 1, random_in(&f->r, 0, 3) ? 6 : 70);
-    s = random_scene_of(&f->r, &h, (int)random_in(&f->r, 0, 1));
     if (s != NULL && ted4_encode(s, 0, NULL, &out, &n, NULL) == TED4_OK && n <= f->max_size) {
         memcpy(f->data, out, n);
         f->size = n;
@@ -229,6 +135,18 @@ static void change_chunks(file *f)
     }
 }
 
+/* Returns whether a chunk has substreams: a TILE, or one of those that have them in profile Compact
+ * only. */
+static int has_substreams(const file *f, size_t at)
+{
+    if (memcmp(f->data + at, ted4_chunk_type[TED4_TILE], 4) == 0)
+        return 1;
+    for (int i = TED4_NETE; i <= TED4_POSN; i++)
+        if (memcmp(f->data + at, ted4_chunk_type[i], 4) == 0)
+            return f->data[PROFILE_BYTE] == TED4_PROFILE_COMPACT;
+    return 0;
+}
+
 /* Changes bytes of one payload, and corrects its size. */
 static void change_payload(file *f, fuzz_bytes_fn *bytes)
 {
@@ -238,7 +156,7 @@ static void change_payload(file *f, fuzz_bytes_fn *bytes)
 
     if (at >= f->size)
         return;
-    f->coded = memcmp(f->data + at, ted4_chunk_type[TED4_TILE], 4) == 0;
+    f->coded = has_substreams(f, at);
     old = ted4_load32(f->data + at + 8);
     capacity = old + (f->max_size - f->size);
     payload = malloc(capacity > 0 ? capacity : 1);
@@ -365,7 +283,7 @@ size_t fuzz_cross_files(const uint8_t *a, size_t a_size, const uint8_t *b, size_
             return 0;
         if (memcmp(to + at, b + from, 4) != 0)
             continue;
-        f.coded = memcmp(to + at, ted4_chunk_type[TED4_TILE], 4) == 0;
+        f.coded = has_substreams(&f, at);
         if (!splice(&f, at, random_in(&f.r, 0, 7) ? old : 0, b + from, n))
             return 0;
         make_right(&f);

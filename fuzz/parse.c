@@ -1,13 +1,16 @@
 /* parse.c - see parse.h. Pass 2 (spec 5.3) on one thread, with the walks of norm/ and the coder of
- * read/. The forgiving coder is the same coder, but it clears failures inside tiles and goes on.
- * SPDX-License-Identifier: BSD-2-Clause */
+ * read/. The forgiving coder is the same coder, but it clears failures inside substreams and goes
+ * on; what substreams of adaptive bits then give is made legal. SPDX-License-Identifier:
+ * BSD-2-Clause */
 #include "parse.h"
 
 #include <string.h>
 #include "harness.h"
 #include "norm/prior.h"
+#include "places.h"
 #include "read/container.h"
 #include "read/inflate.h"
+#include "write/snap.h"
 
 typedef struct {
     ted4_scene *s;
@@ -28,7 +31,7 @@ static const ted4_coder_ops *strict_ops(void)
     return r.base.ops;
 }
 
-/* Clears a failure. Returns 1 if there was one. */
+/* Clears a failure of the operation before. Returns 1 if there was one. */
 static int forgive(ted4_coder *c)
 {
     const int failed = c->error.code != TED4_OK;
@@ -71,6 +74,8 @@ static void any_open(ted4_coder *c, size_t n)
     ted4_reader *r = (ted4_reader *)c;
     ted4_rans_dec *d = &r->rans;
 
+    if (c->error.code != TED4_OK)
+        return;
     strict_ops()->open(c, n);
     if (!forgive(c))
         return;
@@ -81,6 +86,15 @@ static void any_open(ted4_coder *c, size_t n)
         d->state[i] = TED4_RANS_LOW;
 }
 
+/* The substream takes what there is, however short that is. */
+static void any_rest(ted4_coder *c, uint64_t n)
+{
+    if (c->error.code != TED4_OK)
+        return;
+    strict_ops()->rest(c, n);
+    (void)forgive(c);
+}
+
 static void any_close(ted4_coder *c)
 {
     (void)c;
@@ -88,8 +102,10 @@ static void any_close(ted4_coder *c)
 
 static int any_bit(ted4_coder *c, uint32_t prob, int value)
 {
-    const int bit = strict_ops()->bit(c, prob, value);
+    const int had_failed = c->error.code != TED4_OK, bit = strict_ops()->bit(c, prob, value);
 
+    if (had_failed)
+        return 0;
     ((ted4_reader *)c)->rans.underrun = 0;
     (void)forgive(c);
     return bit;
@@ -117,6 +133,57 @@ static void order_tau(ted4_scene *s, unsigned number)
     for (size_t i = first; tau != NULL && i < n && i - first < s->head.tile_size; i++)
         if (tau[i] > tau[2 * n + i])
             tau[2 * n + i] = tau[i];
+}
+
+/* Operations of a reader that forgives what is wrong inside a substream of adaptive bits. */
+static const ted4_coder_ops *forgiving_rest(void)
+{
+    static ted4_coder_ops any;
+
+    any = *strict_ops();
+    any.open = any_open;
+    any.close = any_close;
+    any.bit = any_bit;
+    any.rest = any_rest;
+    return &any;
+}
+
+/* Replaces the values of a blob of mode 2 that R-NET-012 forbids. */
+static void settle_values(ted4_reader *r, ted4_blob *b)
+{
+    if (b->mode != TED4_BLOB_CODED || r->base.error.code != TED4_E_NET_VALUE)
+        return;
+    (void)forgive(&r->base);
+    for (size_t i = 0; i < b->n; i++)
+        if (!ted4_float_legal(ted4_float_bits(b->values[i])))
+            b->values[i] = 0;
+}
+
+/* Replaces the shifts and values of NETE where the rules of 7.3 forbid them. */
+static void settle_nete(parser *p, ted4_reader *r)
+{
+    ted4_scene *s = p->s;
+    const ted4_status is = r->base.error.code;
+
+    if (s->nete.mode != TED4_BLOB_CODED ||
+        (is != TED4_E_NET_VALUE && is != TED4_E_NET_ACCUMULATOR && is != TED4_E_NET_WEIGHT_RANGE))
+        return;
+    (void)forgive(&r->base);
+    ted4_snap(&s->head, &s->shape, s->nete.values, s->shift);
+    if (ted4_prior_load(&p->prior, s->nete.values, s->shift, NULL) != TED4_OK)
+        ted4_fail(&r->base.error, TED4_E_NET_VALUE, r->end);
+}
+
+/* Replaces positions that R-POS-001 or R-POS-005 forbids. */
+static void settle_positions(parser *p, ted4_reader *r)
+{
+    const ted4_status is = r->base.error.code;
+
+    if (is != TED4_E_POS_COUNT && is != TED4_E_POS_VALUE && is != TED4_E_POS_RANGE)
+        return;
+    (void)forgive(&r->base);
+    if (!fuzz_settle(p->s->position, p->s->head.n_anchors, p->s->grid))
+        ted4_fail(&r->base.error, is, r->end);
 }
 
 static ted4_reader reader_of(parser *p, const ted4_chunk_place *place)
@@ -150,6 +217,8 @@ static void nete(parser *p, ted4_reader *r)
         ted4_fail(&r->base.error, TED4_E_LIMIT_MEMORY, r->base.pos);
     else
         ted4_walk_nete(&r->base, s, &p->prior);
+    if (p->forgiving)
+        settle_nete(p, r);
 }
 
 static void values(parser *p, ted4_reader *r, ted4_blob *b, uint64_t n)
@@ -158,6 +227,8 @@ static void values(parser *p, ted4_reader *r, ted4_blob *b, uint64_t n)
         ted4_fail(&r->base.error, TED4_E_LIMIT_MEMORY, r->base.pos);
     else
         ted4_walk_blob(&r->base, "value", p->s, b);
+    if (p->forgiving)
+        settle_values(r, b);
 }
 
 static void positions(parser *p, ted4_reader *r)
@@ -168,17 +239,22 @@ static void positions(parser *p, ted4_reader *r)
     if (p->s->bank.n != p->s->shape.n_bank ||
         (p->s->profile == TED4_PROFILE_MAIN ? bytes / 6 < n : bytes <= ted4_rest_least(n)) ||
         !ted4_scene_alloc_anchors(p->s) ||
-        (p->work = ted4_arena_alloc(&p->s->arena, 1, ted4_tile_work_size(p->s))) == NULL)
+        (p->work = ted4_arena_alloc(&p->s->arena, 1, ted4_tile_work_size(p->s))) == NULL) {
         ted4_fail(&r->base.error, TED4_E_LIMIT_MEMORY, r->base.pos);
-    else
-        ted4_walk_positions(&r->base, p->s);
+        return;
+    }
+    for (size_t i = 0; p->forgiving && i < 3 * (size_t)n; i++)
+        p->s->position[i] = FUZZ_NO_PLACE;
+    ted4_walk_positions(&r->base, p->s);
+    if (p->forgiving && p->s->profile == TED4_PROFILE_COMPACT)
+        settle_positions(p, r);
 }
 
 static void tile(parser *p, ted4_reader *r)
 {
     const ted4_coder_ops any = { any_number, r->base.ops->array, r->base.ops->deflated,
                                  any_sizes,  any_open,           any_close,
-                                 any_bit,    any_gauss,          r->base.ops->rest };
+                                 any_bit,    any_gauss,          any_rest };
 
     if (p->work == NULL || p->n_tiles == p->s->shape.n_tiles) {
         ted4_fail(&r->base.error, TED4_E_CON_CHUNK_ORDER, r->base.pos);
@@ -198,6 +274,8 @@ static int chunk(parser *p, const ted4_chunk_place *place)
     ted4_scene *s = p->s;
     ted4_reader r = reader_of(p, place);
 
+    if (p->forgiving && s->profile == TED4_PROFILE_COMPACT && place->type != TED4_TILE)
+        r.base.ops = forgiving_rest();
     switch (place->type) {
     case TED4_HEAD: ted4_walk_header(&r.base, &s->head, &s->shape, s->level, p->file.end); break;
     case TED4_NETE: nete(p, &r); break;

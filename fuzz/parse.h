@@ -8,11 +8,12 @@
 #include "norm/scene.h"
 
 /* Returns the scene of a file that a decoder accepts apart from the hash in ENDS; its hash member
- * is the value that ENDS should contain. If forgiving is set, the payloads of TILE may be any
- * bytes, and symbols are decoded from them: a substream that ends too early continues with likely
- * symbols, and the remaining bytes of one that ends too late are ignored. Returns NULL if something
- * else is wrong, or memory ran out. *ends: offset of the payload of ENDS. Free the scene with
- * ted4_scene_free. */
+ * is the value that ENDS should contain. If forgiving is set, substreams may be any bytes,
+ * and symbols are decoded from them: a substream that ends too early continues with likely symbols,
+ * and the remaining bytes of one that ends too late are ignored. Where positions or weights that
+ * are read in this way from a file of profile Compact are not legal, others replace them. Returns
+ * NULL if something else is wrong, or memory ran out. *ends: offset of the payload of ENDS. Free
+ * the scene with ted4_scene_free. */
 ted4_scene *fuzz_parse(const uint8_t *data, size_t size, int forgiving, size_t *ends);
 
 #endif

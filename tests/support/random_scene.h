@@ -175,6 +175,36 @@ static inline void random_positions(random_source *r, ted4_scene *s)
     free(order);
 }
 
+/* Draws positions of different places on a grid of so many bits, 6 .. 12, in the order of their
+ * keys. At most a quarter of the places may be taken. */
+static inline void random_grid_positions(random_source *r, ted4_scene *s, unsigned grid)
+{
+    const size_t n = s->head.n_anchors;
+    const uint32_t most = ((uint32_t)1 << grid) - 1;
+    uint64_t *key = malloc(n * sizeof *key);
+    size_t kept = 0;
+
+    while (kept < n) {
+        uint64_t k = 0;
+        size_t at = kept;
+
+        for (int j = 0; j < 3; j++) {
+            const double x = (random_normal(r) / 6 + 0.5) * (most + 1);
+
+            k = k << 1 | ted4_spread3(x < 0 ? 0 : x > most ? most : (uint32_t)x);
+        }
+        while (at > 0 && key[at - 1] > k)
+            at--;
+        if (at > 0 && key[at - 1] == k)
+            continue;
+        memmove(key + at + 1, key + at, (kept++ - at) * sizeof *key);
+        key[at] = k;
+    }
+    for (size_t i = 0; i < 3 * n; i++)
+        s->position[i] = ted4_grid_half(ted4_gather3(key[i / 3] >> (2 - i % 3)), grid);
+    free(key);
+}
+
 static inline void random_masks(random_source *r, ted4_scene *s)
 {
     const uint16_t all = (uint16_t)((1u << s->head.n_offsets) - 1);
@@ -269,16 +299,10 @@ static inline void random_tidy(ted4_scene *s)
     }
 }
 
-/* Returns a scene with that header that ted4_encode accepts, or NULL if memory ran out. wild: with
- * escapes. Free with ted4_scene_free. */
-static inline ted4_scene *random_scene_of(random_source *r, const ted4_header *h, int wild)
+static inline void random_weights(random_source *r, ted4_scene *s, int wild)
 {
-    ted4_scene *s = ted4_scene_new(h, NULL);
-    ted4_arena arena;
-    ted4_prior p;
+    const ted4_header *h = &s->head;
 
-    if (s == NULL)
-        return NULL;
     random_net(r, s->nete.values, &s->shape.hyper, wild ? 1.5 : 0.3);
     for (unsigned m = 1; m < h->n_slices; m++)
         random_net(r, s->nete.values, &s->shape.slice[m], 0.1);
@@ -287,21 +311,82 @@ static inline ted4_scene *random_scene_of(random_source *r, const ted4_header *h
         random_net(r, s->netr.values, &s->shape.netr[i], 0.2);
     for (size_t i = 0; i < s->bank.n; i++)
         s->bank.values[i] = random_in(r, 0, 3) ? (float)random_normal(r) : 0;
-    random_positions(r, s);
+}
+
+/* Draws masks and symbols of a scene whose networks and positions are there. Returns 0 if memory
+ * ran out. */
+static inline int random_symbols_of(random_source *r, ted4_scene *s, int wild)
+{
+    const ted4_header *h = &s->head;
+    ted4_arena arena;
+    ted4_prior p;
+
     random_masks(r, s);
     ted4_arena_init(&arena, NULL);
     if (ted4_prior_init(&p, h, &s->shape, &arena) != TED4_OK ||
         ted4_prior_load(&p, s->nete.values, s->shift, NULL) != TED4_OK ||
         ted4_scene_steps(s, NULL, NULL) != TED4_OK) {
         ted4_arena_finish(&arena);
-        ted4_scene_free(s);
-        return NULL;
+        return 0;
     }
     for (size_t a = 0; a < h->n_anchors; a += 64)
         random_block(r, s, &p, a, h->n_anchors - a < 64 ? h->n_anchors - a : 64, wild);
     random_tidy(s);
     ted4_arena_finish(&arena);
-    return s;
+    return 1;
+}
+
+/* Returns a scene with that header that ted4_encode accepts, or NULL if memory ran out. wild: with
+ * escapes. Free with ted4_scene_free. */
+static inline ted4_scene *random_scene_of(random_source *r, const ted4_header *h, int wild)
+{
+    ted4_scene *s = ted4_scene_new(h, NULL);
+
+    if (s == NULL)
+        return NULL;
+    random_weights(r, s, wild);
+    random_positions(r, s);
+    if (random_symbols_of(r, s, wild))
+        return s;
+    ted4_scene_free(s);
+    return NULL;
+}
+
+/* Rounds to multiples of a power of two that differs from place to place, so that a writer of
+ * profile Compact codes the values as integers (spec 7.6). */
+static inline void random_coarse(random_source *r, ted4_blob *b)
+{
+    int bits = 6;
+
+    for (size_t i = 0; i < b->n; i++) {
+        if (random_in(r, 0, 15) == 0)
+            bits = (int)random_in(r, 3, 12);
+        b->values[i] = ldexpf(rintf(ldexpf(b->values[i], bits)), -bits) + 0.0f; /* no -0 */
+    }
+}
+
+/* Like random_scene_of, of profile Compact: positions lie on a grid of so many bits (spec 8.2), and
+ * weights are coarse enough to be coded as integers. */
+static inline ted4_scene *random_compact_of(random_source *r, const ted4_header *h, int wild,
+                                            unsigned grid)
+{
+    ted4_scene *s = ted4_scene_new(h, NULL);
+
+    if (s == NULL)
+        return NULL;
+    s->profile = TED4_PROFILE_COMPACT;
+    s->grid = (uint8_t)grid;
+    random_weights(r, s, wild);
+    random_coarse(r, &s->netr);
+    random_coarse(r, &s->bank);
+    if (grid < 16)
+        random_grid_positions(r, s, grid);
+    else
+        random_positions(r, s);
+    if (random_symbols_of(r, s, wild))
+        return s;
+    ted4_scene_free(s);
+    return NULL;
 }
 
 /* Returns a small scene with a random header. */

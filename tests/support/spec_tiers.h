@@ -80,15 +80,42 @@ static inline void spec_t0_head(spec_bytes *b, const struct header *h, const uin
     (void)p;
 }
 
-static inline void spec_t0_blob(spec_bytes *b, int id, const uint8_t *p, size_t n, size_t left)
+/* units: how many exponents come before the substream of mode 2 (7.6) */
+static inline void spec_t0_blob(spec_bytes *b, int id, const uint8_t *p, size_t n, size_t left,
+                                size_t units)
 {
-    const int raw = p[0] == 0;
+    const int mode = p[0];
 
     p = spec_t0_numbers(b, ID_mode, p, 1, 1);
-    if (raw)
+    if (mode == 0)
         spec_t0_numbers(b, id, p, 4, n);
-    else
+    else if (mode == 1)
         spec_t0_bytes(b, id + 1, p, left - 1); /* nete_deflated follows nete, and so on: J.2 */
+    else {
+        p = spec_t0_numbers(b, ID_unit_exponent, p, 1, units);
+        spec_t0_bytes(b, ID_weights_substream, p, left - 1 - units);
+    }
+}
+
+static inline size_t spec_units_r(const spec_model *m)
+{
+    size_t n = 0;
+
+    for (int i = 0; i < NETS_R; i++)
+        for (int j = 0; j < m->p.net_r[i].n_layers; j++)
+            n += (size_t)m->p.net_r[i].dim[j + 1] + 1;
+    return n;
+}
+
+/* 8.1, 8.2 */
+static inline void spec_t0_positions(spec_bytes *b, const spec_model *m, const uint8_t *p, size_t n)
+{
+    if (m->p.file[10] == 0) {
+        spec_t0_numbers(b, ID_position, p, 2, 3 * (size_t)m->p.s.h.n_anchors);
+    } else {
+        p = spec_t0_numbers(b, ID_grid, p, 1, 1);
+        spec_t0_bytes(b, ID_tree_substream, p, n - 1);
+    }
 }
 
 static inline int spec_n_substreams(const struct header *h)
@@ -129,11 +156,11 @@ static inline void spec_t0_payload(spec_bytes *b, const spec_model *m, int kind,
     case 0: spec_t0_head(b, &m->p.s.h, p); break;
     case 1:
         spec_t0_numbers(b, ID_shift, p, 1, m->p.n_units);
-        spec_t0_blob(b, ID_nete, p + m->p.n_units, m->p.n_nete, n - m->p.n_units);
+        spec_t0_blob(b, ID_nete, p + m->p.n_units, m->p.n_nete, n - m->p.n_units, 0);
         break;
-    case 2: spec_t0_blob(b, ID_netr, p, m->p.n_netr, n); break;
-    case 3: spec_t0_blob(b, ID_bank, p, m->p.n_bank, n); break;
-    case 4: spec_t0_numbers(b, ID_position, p, 2, 3 * (size_t)m->p.s.h.n_anchors); break;
+    case 2: spec_t0_blob(b, ID_netr, p, m->p.n_netr, n, spec_units_r(m)); break;
+    case 3: spec_t0_blob(b, ID_bank, p, m->p.n_bank, n, 1); break;
+    case 4: spec_t0_positions(b, m, p, n); break;
     case 5: spec_t0_tile(b, &m->p.s.h, p); break;
     case 6: spec_t0_bytes(b, ID_ends_hash, p, n); break;
     default: spec_t0_bytes(b, ID_ancillary, p, n); break;

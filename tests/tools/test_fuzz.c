@@ -16,7 +16,7 @@
 #define CORPUS      "fuzz/corpus/ted4"
 #define REGRESSIONS "fuzz/regressions"
 
-enum { MAX_FILES = 64, MAX_SIZE = 1 << 13, CHANGES = 400 };
+enum { MAX_FILES = 64, MAX_SIZE = 1 << 13, CHANGES = 400, PROFILE_AT = 10 };
 
 static struct {
     uint8_t data[MAX_SIZE];
@@ -222,29 +222,67 @@ static void test_mutator(void **state)
     free(b);
 }
 
+/* Fills the payload of the first chunk of a type with any bytes, from byte first on, and corrects
+ * its hash. Returns 0 if there is none, or if it is a blob without a substream. */
+static int fill_chunk(random_source *r, uint8_t *data, size_t size, const char *type, size_t first)
+{
+    const int is_blob = strcmp(type, "NETR") == 0 || strcmp(type, "BANK") == 0;
+    size_t at = TED4_FILE_HEADER_SIZE;
+
+    while (at < size && memcmp(data + at, type, 4) != 0)
+        at += ted4_chunk_size(data, size, at);
+    if (at >= size || (is_blob && data[at + TED4_FRAME_HEAD_SIZE] != TED4_BLOB_CODED))
+        return 0;
+    for (size_t i = TED4_FRAME_HEAD_SIZE + first;
+         i + TED4_FRAME_HASH_SIZE < ted4_chunk_size(data, size, at); i++)
+        data[at + i] = (uint8_t)random_u32(r);
+    ted4_fix_hashes(data, size);
+    return 1;
+}
+
+/* Any bytes in the substreams of a chunk of profile Compact, behind the grid or the mode, can be
+ * turned into places or weights of a valid file. Returns how many chunks were tried. */
+static int fix_adaptive(random_source *r, const uint8_t *from, size_t size)
+{
+    static const char *const type[] = { "NETR", "BANK", "POSN" };
+    uint8_t *const data = malloc(2 * MAX_SIZE);
+    ted4_info info;
+    int n = 0;
+
+    assert_non_null(data);
+    for (size_t i = 0; from[PROFILE_AT] == 1 && i < sizeof type / sizeof *type; i++) {
+        memcpy(data, from, size);
+        if (!fill_chunk(r, data, size, type[i], 1) || decode(data, size, &info) == TED4_OK)
+            continue;
+        assert_int_equal(decode(data, ted4_fix_range_codes(data, size, 2 * MAX_SIZE), &info),
+                         TED4_OK);
+        n++;
+    }
+    free(data);
+    return n;
+}
+
 /* Any bytes in the substreams can be turned into symbols of a valid file. */
 static void test_fix_range_codes(void **state)
 {
     random_source r = random_seed(9);
     uint8_t *const data = malloc(2 * MAX_SIZE);
     ted4_info info;
+    int n_adaptive = 0;
 
     (void)state;
     assert_non_null(data);
     for (int i = 0; i < n_files; i++) {
-        size_t at = TED4_FILE_HEADER_SIZE, size = file[i].size;
+        size_t size = file[i].size;
 
         memcpy(data, file[i].data, size);
-        while (memcmp(data + at, "TILE", 4) != 0)
-            at += ted4_chunk_size(data, size, at);
-        for (size_t j = TED4_FRAME_HEAD_SIZE;
-             j + TED4_FRAME_HASH_SIZE < ted4_chunk_size(data, size, at); j++)
-            data[at + j] = (uint8_t)random_u32(&r);
-        ted4_fix_hashes(data, size);
+        assert_true(fill_chunk(&r, data, size, "TILE", 0));
         assert_int_not_equal(decode(data, size, &info), TED4_OK);
         size = ted4_fix_range_codes(data, size, 2 * MAX_SIZE);
         assert_int_equal(decode(data, size, &info), TED4_OK);
+        n_adaptive += fix_adaptive(&r, file[i].data, file[i].size);
     }
+    assert_true(n_adaptive > 12);
     free(data);
 }
 
