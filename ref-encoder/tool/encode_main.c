@@ -343,8 +343,8 @@ static int transcode(const encoder *e)
         snprintf(text, sizeof text, "%s: cannot be read", r->transcode);
         return complain(e, text);
     }
-    if (ted4_transcode(file, size, r->profile, e->parallel, &out, &out_size, &sorted, &dropped,
-                       &why) != 0) {
+    if (ted4_transcode(file, size, r->options.profile, e->parallel, &out, &out_size, &sorted,
+                       &dropped, &why) != 0) {
         free(file);
         snprintf(text, sizeof text, "%s: %s", r->transcode, why);
         return complain(e, text);

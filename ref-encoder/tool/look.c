@@ -10,6 +10,7 @@
 #include "train/search/prior_bits.h"
 #include "train/search/rd_prune.h"
 #include "train/search/static_test.h"
+#include "train/search/weight_bits.h"
 #include "train/step/events.h"
 #include "training.h"
 
@@ -33,8 +34,10 @@ static double trials_left(const ted4_trainer *t)
 {
     const double refine = ted4_refine_prior_bits_steps(t), prune = ted4_rd_prune_steps(t);
 
-    if (!t->opt.capacity || t->opt.stage2 == 0 || t->search.decided == TED4_DECIDED_ALL)
+    if (t->opt.stage2 == 0 || t->search.decided == TED4_DECIDED_ALL)
         return 0;
+    if (!t->opt.capacity)
+        return ted4_coarsen_weights_steps(t);
     if (t->search.decided == TED4_DECIDED_NOTHING)
         return search_steps(t) + refine + prune;
     return t->search.decided == TED4_DECIDED_MODEL ? refine + prune : prune;

@@ -5,24 +5,31 @@
 #include "preview.h"
 
 #include <stdlib.h>
+#include <string.h>
 
+#include "base/bytes.h"
+#include "norm/coder.h"
 #include "train/state/picture.h"
 #include "train/monitor/checkpoint.h"
 #include "train/step/export_scene.h"
-#include "write/deflate.h"
 #include "write/encode.h"
 
-/* Size in bytes of a blob of weights after the writer's deflate. */
-static double blob_bytes(const ted4_blob *b)
+/* Adds the sizes of payloads of a file [size] that was just written (spec 5.2). */
+static void add_chunks(const uint8_t *file, size_t size, ted4_preview *p)
 {
-    const size_t capacity = ted4_deflate_bound(b->n);
-    uint8_t *const memory = malloc(4 * b->n + capacity);
-    size_t size = 4 * b->n;
+    size_t at = TED4_FILE_HEADER_SIZE;
 
-    if (memory != NULL && !ted4_deflate(b->values, b->n, memory, memory + 4 * b->n, &size))
-        size = 4 * b->n;
-    free(memory);
-    return (double)size;
+    p->positions = p->networks = 0;
+    while (at < size) {
+        const double payload = (double)ted4_load32(file + at + 8);
+
+        if (memcmp(file + at, ted4_chunk_type[TED4_POSN], 4) == 0)
+            p->positions += payload;
+        for (ted4_chunk c = TED4_NETE; c <= TED4_BANK; c++)
+            if (memcmp(file + at, ted4_chunk_type[c], 4) == 0)
+                p->networks += payload;
+        at += TED4_FRAME_HEAD_SIZE + (size_t)payload + TED4_FRAME_HASH_SIZE;
+    }
 }
 
 /* Codes the scene and sets the sizes in *p. Returns 0, or -1 if the scene cannot be coded. */
@@ -35,14 +42,12 @@ static int count_bytes(const ted4_scene *s, const ted4_parallel *parallel, ted4_
 
     if (ted4_encode(s, 0, parallel, &file, &size, &e) != TED4_OK)
         return -1;
+    add_chunks(file, size, p);
     free(file);
     if (ted4_count(s, parallel, &bits, &e) != TED4_OK)
         return -1;
     p->bytes = (double)size;
-    p->positions = 6.0 * (double)s->head.n_anchors;
     p->masks = bits.mask / 8.0;
-    p->networks = blob_bytes(&s->nete) + blob_bytes(&s->netr) + blob_bytes(&s->bank) +
-                  (double)s->shape.n_units;
     p->frame = p->bytes - p->positions - p->masks - p->networks;
     for (int y = 0; y < TED4_TYPES; y++) {
         p->type[y] = bits.type[y] / 8.0;

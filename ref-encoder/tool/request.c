@@ -176,7 +176,7 @@ static const ted4_command COMMAND = {
 
 /* Options that can be applied only after the preset. */
 typedef struct {
-    const char *preset, *lambda, *iterations, *capacity, *set[MAX_SETS];
+    const char *preset, *lambda, *iterations, *capacity, *profile, *set[MAX_SETS];
     int n_sets;
 } pending;
 
@@ -238,6 +238,8 @@ static int take_bounds(ted4_request *r, const char *value)
 
 static int take_profile(const char *value, int *profile)
 {
+    if (value == NULL)
+        return TED4_REQUEST_GO;
     *profile = strcmp(value, "compact") == 0 ? TED4_PROFILE_COMPACT : TED4_PROFILE_MAIN;
     return *profile == TED4_PROFILE_COMPACT || strcmp(value, "main") == 0
                ? TED4_REQUEST_GO
@@ -282,7 +284,7 @@ static int take(ted4_request *r, pending *p, int option, const char *value)
     case OPT_STAGE1: r->stage1 = value; break;
     case OPT_LOG: r->log = value; break;
     case OPT_TRANSCODE: r->transcode = value; break;
-    case OPT_PROFILE: return take_profile(value, &r->profile);
+    case OPT_PROFILE: p->profile = value; break;
     case OPT_TITLE: return take_text(option, value, &r->title);
     case OPT_AUTHOR: return take_text(option, value, &r->author);
     case OPT_LICENCE: return take_text(option, value, &r->licence);
@@ -368,7 +370,8 @@ static int set_iterations(ted4_request *r, const char *text)
     return status != TED4_REQUEST_GO ? status : set(r, one);
 }
 
-/* Applies the preset first, then --iterations, --lambda and --capacity, then --set in order. */
+/* Applies the preset first, then --iterations, --lambda, --capacity and --profile, then --set in
+ * order. */
 static int apply(ted4_request *r, const pending *p)
 {
     const uint32_t seed = r->options.seed;
@@ -393,6 +396,8 @@ static int apply(ted4_request *r, const pending *p)
         return bad_value(OPT_CAPACITY, p->capacity, "auto or fixed");
     if (p->capacity != NULL)
         r->options.capacity = strcmp(p->capacity, "auto") == 0;
+    if (status == TED4_REQUEST_GO)
+        status = take_profile(p->profile, &r->options.profile);
     for (int i = 0; i < p->n_sets && status == TED4_REQUEST_GO; i++)
         status = set(r, p->set[i]);
     return status;

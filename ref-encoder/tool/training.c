@@ -326,7 +326,6 @@ int ted4_training_code(ted4_training *t, ted4_coded *c)
         c->verified.estimated_bits += bits[y];
     char *text = t->request->search_report ? ted4_search_report(tr) : NULL;
 
-    scene->profile = (uint8_t)t->request->profile;
     bad = t->request->search_report && text == NULL;
     if (bad)
         snprintf(t->why, sizeof t->why, "no memory to say why");

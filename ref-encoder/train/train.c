@@ -8,6 +8,7 @@
 #include "train/search/prior_bits.h"
 #include "train/search/rd_prune.h"
 #include "train/search/static_test.h"
+#include "train/search/weight_bits.h"
 #include "train/step/events.h"
 #include "train/step/step.h"
 
@@ -38,6 +39,10 @@ static experiment in_stage2(const ted4_trainer *t)
     if (t->search.decided == TED4_DECIDED_MODEL && ted4_integer_due(t))
         return (experiment) { ted4_refine_prior_bits, TED4_BUSY_TRIALS,
                               ted4_refine_prior_bits_steps(t) };
+    if (t->search.decided == TED4_DECIDED_NOTHING && ted4_integer_due(t) &&
+        ted4_coarsen_weights_steps(t) > 0)
+        return (experiment) { ted4_coarsen_weights, TED4_BUSY_TRIALS,
+                              ted4_coarsen_weights_steps(t) };
     return nothing;
 }
 

@@ -17,7 +17,8 @@ static double weight_of_bit(const ted4_trainer *t)
     return t->opt.lambda / (34.0 * (double)t->anchors.n);
 }
 
-static void test_cost(void **state)
+/* profile: an option. Returns the bytes of the file. */
+static double check_cost(const char *profile)
 {
     ted4_train_options o = ball_options();
     tiny_folder folder;
@@ -26,7 +27,7 @@ static void test_cost(void **state)
     ted4_cost c;
     ball_file f;
 
-    (void)state;
+    ball_set(&o, profile);
     ball_set(&o, "stage1=40");
     ball_set(&o, "stage2=40");
     ball_load(&folder, &scene, FRAMES, 1);
@@ -43,6 +44,16 @@ static void test_cost(void **state)
     ted4_trainer_finish(&t);
     ted4_dataset_free(&scene);
     tiny_free(&folder);
+    return c.bytes;
+}
+
+static void test_cost(void **state)
+{
+    (void)state;
+
+    const double main_bytes = check_cost("profile=0"), bytes = check_cost("profile=1");
+
+    assert_true(bytes < 0.95 * main_bytes);
 }
 
 int main(void)

@@ -15,7 +15,7 @@
 #include "train/model/header_from_options.h"
 
 #define MAGIC 0x34444554u /* "TED4" */
-enum { FORMAT = 15 };
+enum { FORMAT = 16 };
 
 typedef ted4_state_stream stream;
 
@@ -257,8 +257,15 @@ static void walk_good(stream *s, ted4_trainer *t)
         ted4_monitor_forget(t);
 }
 
-/* Writes or reads the results of the model search. There are none before stage 2; without trials
- * the model is the one with which stage 2 began. */
+/* Whether trials may have decided something: the model search, or how coarse the weights of profile
+ * Compact are. */
+static int may_have_trials(const ted4_trainer *t)
+{
+    return t->phase.stage2 && (t->opt.capacity || t->opt.profile == TED4_PROFILE_COMPACT);
+}
+
+/* Writes or reads the results of trials. There are none before stage 2; without trials the model
+ * is the one with which stage 2 began. */
 static void walk_capacity(stream *s, ted4_trainer *t)
 {
     enum { MOST = 4096 };
@@ -269,7 +276,7 @@ static void walk_capacity(stream *s, ted4_trainer *t)
         t->search.decided = 0;
         ted4_weight_grid_full(t->net.bits);
     }
-    if (t->phase.stage2 && t->opt.capacity) {
+    if (may_have_trials(t)) {
         put(s, &t->phase.rate_norm_header, sizeof t->phase.rate_norm_header);
         put(s, &t->search.decided, sizeof t->search.decided);
         put(s, t->net.bits, sizeof t->net.bits);

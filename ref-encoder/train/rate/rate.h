@@ -23,9 +23,6 @@ typedef struct {
     int activation;          /* 0: tau is not coded yet (static phase) */
 } ted4_rate_input;
 
-/* Bits of an anchor besides its values: its position (spec 8), and whether it moves. */
-#define TED4_RATE_ANCHOR_BITS 49.0
-
 typedef struct ted4_rate ted4_rate;
 
 ted4_rate *ted4_rate_new(const ted4_layout *l);

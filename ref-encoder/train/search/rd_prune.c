@@ -11,6 +11,7 @@
 #include "sensitivity.h"
 #include "train/state/visible_blocks.h"
 #include "train/monitor/checkpoint.h"
+#include "train/step/settle_positions.h"
 
 /* The prices to try, as multiples of lambda per bit. */
 static const double prices[] = { 0.125, 0.25, 0.5, 1.0, 2.0, 4.0 };
@@ -72,7 +73,7 @@ static void prune_anchor(ted4_trainer *t, const worth *w, size_t i, double price
 {
     const size_t K = t->layout.head.n_offsets;
     const float *bits = w->bits + i / TED4_LANES * (1 + K) * TED4_LANES + i % TED4_LANES;
-    double left = 0, cost = price * (TED4_RATE_ANCHOR_BITS + (double)bits[0]);
+    double left = 0, cost = price * (ted4_anchor_bits(t) + (double)bits[0]);
 
     for (size_t k = 0; k < K; k++) {
         const double use = (double)w->use[i * K + k],

@@ -7,6 +7,7 @@
 #include "train/monitor/grad_norm.h"
 #include "recon/strict.h"
 #include "schedule.h"
+#include "settle_positions.h"
 #include "train/math/adam.h"
 
 /* The largest number of channels that the ranges of the header allow (model.h). */
@@ -122,7 +123,7 @@ static double count_kept(const ted4_trainer *t)
  * that are seen rarely have a larger weight when they are. */
 static float offset_mask_weight(const ted4_trainer *t)
 {
-    double bits = TED4_RATE_ANCHOR_BITS; /* of an anchor */
+    double bits = ted4_anchor_bits(t); /* of an anchor */
 
     for (int y = 0; y < TED4_TYPES; y++)
         bits += t->progress.bits[y];

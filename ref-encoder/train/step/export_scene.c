@@ -10,6 +10,7 @@
 #include "norm/half.h"
 #include "norm/scene.h"
 #include "norm/tables.h"
+#include "settle_positions.h"
 #include "stages.h"
 #include "train/state/anchor_masks.h"
 #include "write/encode.h"
@@ -77,7 +78,7 @@ static void copy_values(ted4_blob *to, const float *from)
 
 /* An anchor and its place in the file. */
 typedef struct {
-    uint64_t morton;
+    uint64_t key;
     uint32_t anchor;
 } placed;
 
@@ -85,8 +86,8 @@ static int compare_placed(const void *x, const void *y)
 {
     const placed *a = x, *b = y;
 
-    return a->morton != b->morton ? (a->morton < b->morton ? -1 : 1)
-                                  : (a->anchor > b->anchor) - (a->anchor < b->anchor);
+    return a->key != b->key ? (a->key < b->key ? -1 : 1)
+                            : (a->anchor > b->anchor) - (a->anchor < b->anchor);
 }
 
 /* Lists the anchors of the file, keep[*n], in its order (spec 8). Returns 0, or -1 if memory ran
@@ -100,7 +101,7 @@ static int keep_anchors(const ted4_trainer *t, uint32_t *keep, size_t *n)
         return -1;
     for (size_t i = 0; i < t->anchors.n; i++)
         if (ted4_offset_bits(t, i) != 0)
-            p[(*n)++] = (placed) { ted4_anchor_morton(&t->anchors, i), (uint32_t)i };
+            p[(*n)++] = (placed) { ted4_position_key(t, i), (uint32_t)i };
     qsort(p, *n, sizeof *p, compare_placed);
     for (size_t i = 0; i < *n; i++)
         keep[i] = p[i].anchor;
@@ -156,6 +157,7 @@ int ted4_export_scene(ted4_trainer *t, ted4_scene **scene)
 
     ted4_scene *s = *scene;
 
+    s->profile = (uint8_t)t->opt.profile;
     memcpy(s->shift, t->net.shift, s->shape.n_units);
     copy_values(&s->netr, t->net.value + t->layout.netr);
     copy_values(&s->bank, t->net.value + t->layout.bank);

@@ -8,8 +8,8 @@
 
 #include "train/model/formulas.h"
 #include "math/elementary.h"
-#include "norm/half.h"
 #include "train/model/header_from_options.h"
+#include "settle_positions.h"
 #include "train/resize/feature_pca.h"
 #include "train/model/init.h"
 #include "train/densify/short_lived.h"
@@ -139,36 +139,6 @@ int ted4_stage_drop_dead(ted4_trainer *t)
         bad = ted4_trainer_fail(t, "no memory to drop idle anchors");
     free(order);
     return bad;
-}
-
-/* Rounds positions to those that the file will contain. Of anchors that then coincide, keeps only
- * the first. */
-static int settle_positions(ted4_trainer *t)
-{
-    ted4_anchors *a = &t->anchors;
-    uint32_t *order = malloc((a->n + 1) * sizeof *order);
-    uint64_t last = 0;
-    size_t n = 0;
-
-    for (size_t i = 0; i < a->n; i++)
-        for (int j = 0; j < 3; j++) {
-            float *p = ted4_anchor_value(a, TED4_ROW_POSITION, i, j);
-
-            *p = ted4_half_to_float(ted4_float_to_half(*p)) + 0.0f;
-        }
-
-    int bad = order == NULL || ted4_anchors_sort(a, NULL) != 0;
-
-    for (size_t i = 0; !bad && i < a->n; i++) {
-        const uint64_t code = ted4_anchor_morton(a, i);
-
-        if (i == 0 || code != last)
-            order[n++] = (uint32_t)i;
-        last = code;
-    }
-    bad = bad || ted4_anchors_select(a, order, n) != 0;
-    free(order);
-    return bad ? ted4_trainer_fail(t, "no memory to settle positions") : 0;
 }
 
 /* Copies the channels of one kind of row from the old layout to the new one. */
@@ -302,7 +272,7 @@ static void clear_moments(ted4_trainer *t)
 
 int ted4_stage2_begin(ted4_trainer *t)
 {
-    if (settle_positions(t) != 0 || ted4_stage_drop_dead(t) != 0 || reshape(t) != 0)
+    if (ted4_settle_positions(t) != 0 || ted4_stage_drop_dead(t) != 0 || reshape(t) != 0)
         return -1;
     if (t->opt.capacity && ted4_feature_pca(t) != 0)
         return -1;
