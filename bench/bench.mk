@@ -170,6 +170,14 @@ capacity: all
 
 .PHONY: capacity
 
+# Files of profile Compact against those before: the runs of bench/bd_rate.txt whose row in
+# bench/bd_rate.csv is missing or stale (half an hour; resumable), then bench/bd_rate.md.
+bd-rate: all
+	TED4_BUILD=$B TED4_DATA=$(TED4_DATA) bench/bd_rate.sh
+	python3 -m bench.pages bd_rate
+
+.PHONY: bd-rate
+
 # The same training everywhere: a small scene trained by the builds of bench/machines.txt whose row
 # in bench/machines.csv is missing or stale, and the table in bench/machines.md. Builds whose tools
 # are missing are skipped, which is said; on Debian for x86-64, deps-cross-train installs them.

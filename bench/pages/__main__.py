@@ -1,6 +1,6 @@
 """Writes a page of bench/ and its charts; answers what the scripts that make the rows ask.
 
-    python3 -m bench.pages report|capacity|stability|zoo [STATES]
+    python3 -m bench.pages report|capacity|stability|zoo|bd_rate [STATES]
     python3 -m bench.pages runs TABLE          the runs that a table wants, a line each:
         GROUPS|TAG|SCENE|WHERE|VARIANT|PLACE|LAMBDA|KEEP|STAGE1|OPTIONS
     python3 -m bench.pages times LOG...        training_times of logs.py, divided by commas
@@ -33,6 +33,7 @@ PAGES = {
     "capacity": ("capacity", "capacity", "capacity"),
     "stability": ("stability", "lab", "stability"),
     "zoo": ("zoo", "zoo", "zoo"),
+    "bd_rate": ("bd_rate", "bd_rate", "bd_rate"),
 }
 
 

@@ -100,7 +100,9 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
     [OPT_STAGE1] = { 0, "stage1", "FILE", "begin with this end of stage 1, or make the file" },
     [OPT_LOG] = { 0, "log", "FILE", "JSON lines of progress; with --resume it goes on" },
     [OPT_PROFILE] = { 0, "profile", "NAME",
-                      "main (default), which every decoder reads, or compact, which is smaller" },
+                      "main (default), which every decoder reads, or compact, which is smaller: "
+                      "its "
+                      "stage 2 is twice as long, see --set profile" },
     [OPT_TRANSCODE] = { 0, "transcode", "FILE",
                         "no training: write this file again, in the profile, without loss" },
     [OPT_TITLE] = { 0, "title", "TEXT", "title of the scene, for players and ted4info" },
@@ -236,14 +238,23 @@ static int take_bounds(ted4_request *r, const char *value)
     return TED4_REQUEST_GO;
 }
 
-static int take_profile(const char *value, int *profile)
+/* What --profile compact sets besides the profile: masks weigh all that a Gaussian costs, and stage
+ * 2 is longer. bench/compact.md has the measurements. */
+#define COMPACT_MASK_WEIGHT 1.0
+enum { COMPACT_STAGE2 = 2 };
+
+static int take_profile(const char *value, ted4_train_options *o)
 {
     if (value == NULL)
         return TED4_REQUEST_GO;
-    *profile = strcmp(value, "compact") == 0 ? TED4_PROFILE_COMPACT : TED4_PROFILE_MAIN;
-    return *profile == TED4_PROFILE_COMPACT || strcmp(value, "main") == 0
-               ? TED4_REQUEST_GO
-               : bad_value(OPT_PROFILE, value, "main or compact");
+    if (strcmp(value, "compact") != 0 && strcmp(value, "main") != 0)
+        return bad_value(OPT_PROFILE, value, "main or compact");
+    o->profile = strcmp(value, "compact") == 0 ? TED4_PROFILE_COMPACT : TED4_PROFILE_MAIN;
+    if (o->profile == TED4_PROFILE_COMPACT) {
+        o->mask_weight = COMPACT_MASK_WEIGHT;
+        o->stage2 *= COMPACT_STAGE2;
+    }
+    return TED4_REQUEST_GO;
 }
 
 /* A text that becomes one line of META. */
@@ -370,7 +381,7 @@ static int set_iterations(ted4_request *r, const char *text)
     return status != TED4_REQUEST_GO ? status : set(r, one);
 }
 
-/* Applies the preset first, then --iterations, --lambda, --capacity and --profile, then --set in
+/* Applies the preset first, then --profile, --iterations, --lambda and --capacity, then --set in
  * order. */
 static int apply(ted4_request *r, const pending *p)
 {
@@ -385,7 +396,8 @@ static int apply(ted4_request *r, const pending *p)
         return complain(text);
     }
     r->options.seed = seed;
-    if (p->iterations != NULL)
+    status = take_profile(p->profile, &r->options);
+    if (p->iterations != NULL && status == TED4_REQUEST_GO)
         status = set_iterations(r, p->iterations);
     if (p->lambda != NULL && status == TED4_REQUEST_GO) {
         snprintf(text, sizeof text, "lambda=%s", p->lambda);
@@ -396,8 +408,6 @@ static int apply(ted4_request *r, const pending *p)
         return bad_value(OPT_CAPACITY, p->capacity, "auto or fixed");
     if (p->capacity != NULL)
         r->options.capacity = strcmp(p->capacity, "auto") == 0;
-    if (status == TED4_REQUEST_GO)
-        status = take_profile(p->profile, &r->options.profile);
     for (int i = 0; i < p->n_sets && status == TED4_REQUEST_GO; i++)
         status = set(r, p->set[i]);
     return status;

@@ -1,0 +1,130 @@
+"""bench/bd_rate.md: files of profile Compact against those that training made before.
+SPDX-License-Identifier: BSD-2-Clause"""
+from .bars import Bars
+from .compare import Change
+from .rows import made_with, mark
+from .words import Page, fixed, signed
+
+LEAST_GAIN = -25       # percent, BD-rate
+MOST_BITS = 20         # of a position, an anchor
+MOST_TIME = 1.5        # times the decoding time of profile Main
+RATE_ERROR = 0.01      # estimate against the file
+COMMAND = "`bench/bd_rate.sh`"
+
+
+def write(runs, _charts, _results, _pages):
+    """{name of the file: text}."""
+    bars = Bars()
+    changes = {scene: Change(runs, scene, "compact", "before") for scene in runs.scenes}
+    rate_bar(runs, bars, changes)
+    position_bar(runs, bars)
+    time_bar(runs, bars)
+    estimate_bar(runs, bars)
+    page = Page()
+    page.heading("Profile Compact: rate and quality", 1)
+    page.prose("""`make bd-rate` writes this page from [bd_rate.csv](bd_rate.csv); the runs are
+        those of bd_rate.txt, in small trainings. "before" is the encoder without profile Compact,
+        at its own defaults; "compact" is `--profile compact`, whose stage 2 is twice as long. PSNR
+        is that of held-out pictures, drawn from the decoded file. † marks rows that other sources
+        made.""")
+    page.prose(f"{sum(run.has() for run in runs.all)} of {len(runs.all)} rows are there"
+               + made_with(runs.all) + ".")
+    page.prose(bars.summary())
+    bars.show(page, "command, then `python3 -m bench.pages bd_rate`")
+    rate_table(runs, page, changes)
+    run_table(runs, page)
+    return {"bd_rate.md": page.text()}
+
+
+def is_complete(runs, scene):
+    return all(runs.is_complete(scene, variant) for variant in ("before", "compact"))
+
+
+def verdict(missed, known, wanted):
+    """False as soon as one misses the bar, True when all are known and none does."""
+    return False if missed else True if known == wanted and wanted else None
+
+
+def rate_bar(runs, bars, changes):
+    known = {scene: change.bd_rate for scene, change in changes.items()
+             if is_complete(runs, scene) and change.bd_rate is not None}
+    missed = [scene for scene in known if known[scene] > LEAST_GAIN]
+    bars.add(1, "BD-rate against the encoder before, four rates",
+             f"{LEAST_GAIN} % at least on each scene",
+             ", ".join(f"{scene} {signed(rate, 1, ' %')}" for scene, rate in known.items()),
+             verdict(missed, len(known), len(runs.scenes)), COMMAND)
+
+
+def position_bits(run):
+    return 8 * run.count("b_positions") / run.count("anchors")
+
+
+def position_bar(runs, bars):
+    known = {run.tag: position_bits(run) for run in runs.all
+             if run.variant == "compact" and run.has()}
+    wanted = sum(run.variant == "compact" for run in runs.all)
+    most = max(known, key=known.get, default=None)
+    bars.add(2, "positions", f"at most {MOST_BITS} bits an anchor",
+             "" if most is None else f"{fixed(min(known.values()), 1)} to "
+             f"{fixed(known[most], 1)} bits, most: {most}",
+             verdict(any(bits > MOST_BITS for bits in known.values()), len(known), wanted), COMMAND)
+
+
+def largest(runs, variant):
+    """The run with the largest file of a variant."""
+    return max((run for run in runs.all if run.variant == variant and run.has()),
+               key=lambda run: run.count("bytes"), default=None)
+
+
+def time_bar(runs, bars):
+    """Of the pair of runs whose file of profile Main is the largest."""
+    before = largest(runs, "before")
+    compact = before and runs.find(before.tag.replace("-before-", "-compact-"))
+    times = None
+    if compact and compact.has():
+        times = compact.count("decode_ms") / before.count("decode_ms")
+    bars.add(4, "decoding the largest file, one core", f"at most {MOST_TIME} times as long",
+             "" if times is None else f"{before.scene} at λ {before.weight}: "
+             f"{fixed(compact.number('decode_ms'), 1)} ms for "
+             f"{fixed(before.number('decode_ms'), 1)} ms, {fixed(times, 2)} times",
+             None if times is None else times <= MOST_TIME, COMMAND)
+
+
+def estimate_error(run):
+    return run.count("estimated_bits") / run.count("coded_bits") - 1
+
+
+def estimate_bar(runs, bars):
+    known = {run.tag: estimate_error(run) for run in runs.all if run.has()}
+    most = max(known, key=lambda tag: abs(known[tag]), default=None)
+    bars.add(5, "bits of values that training counts, against the file", "within 1 %",
+             "" if most is None else f"at most {signed(100 * known[most], 2, ' %')}: {most}",
+             verdict(any(abs(error) > RATE_ERROR for error in known.values()), len(known),
+                     len(runs.all)), COMMAND)
+
+
+def rate_table(runs, page, changes):
+    page.heading("BD-rate")
+    page.table("scene", "BD-rate", "PSNR at equal bytes", "rows")
+    for scene, change in changes.items():
+        rows = runs.present(scene, "before") + runs.present(scene, "compact")
+        wanted = runs.of(scene, "before") + runs.of(scene, "compact")
+        if not rows:
+            page.row_missing(scene)
+            continue
+        page.row(scene + mark(rows), change.bd_rate_text(), signed(change.psnr, 2, " dB"),
+                 f"{len(rows)} of {len(wanted)}")
+
+
+def run_table(runs, page):
+    page.heading("Runs")
+    page.table("run", "λ", "bytes", "PSNR, dB", "anchors", "position, bits an anchor",
+               "estimate", "decoding, ms", "training, CPU s")
+    for run in runs.all:
+        if not run.has():
+            page.row_missing(run.tag)
+            continue
+        page.row(run.name(), run.weight, run.text("bytes"), fixed(run.number("psnr"), 2),
+                 run.text("anchors"), fixed(position_bits(run), 1),
+                 signed(100 * estimate_error(run), 2, " %"), fixed(run.number("decode_ms"), 1),
+                 fixed(run.number("cpu_s"), 0))

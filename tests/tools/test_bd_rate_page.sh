@@ -1,0 +1,57 @@
+#!/bin/sh
+# test_bd_rate_page.sh - the page of profile Compact, made from a small table of rows whose BD-rate
+# can be computed by hand. Prints lines as a cmocka program does; run by `make test` from the
+# project's root.
+# SPDX-License-Identifier: BSD-2-Clause
+set -u
+. tests/support/speak.sh
+need bd_rate_page python3
+make_page() { TED4_RESULTS=$out TED4_TABLE=$out/table.txt python3 -m bench.pages bd_rate \
+    "$out/states"; }
+page=$out/bd_rate.md
+
+cat >"$out/table.txt" <<END
+lambdas 0.001 0.002 0.006 0.018
+base  --preset fast
+scene still own:still
+scene turn  own:turn
+run bd before  all 1,2,3,4 - --set stage2=2000
+run bd compact all 1,2,3,4 - --set profile=1
+END
+# Bytes of "before", PSNR; those of "compact" are SHARE of them at the same PSNR, so that this is
+# the BD-rate. Positions have 48 and BITS bits an anchor; decoding takes TIMES times as long.
+rows() {
+    awk -v share="$1" -v bits="$2" -v times="$3" -v estimate="$4" 'BEGIN {
+        print "tag,key,lambda,bytes,psnr,b_positions,anchors,cpu_s,estimated_bits,coded_bits," \
+            "decode_ms"
+        split("0.001 0.002 0.006 0.018", lambda, " ")
+        for (scene = 1; scene <= 2; scene++)
+            for (i = 1; i <= 4; i++) {
+                name = scene == 1 ? "still" : "turn"
+                bytes = scene * 80000 / i
+                print name "-before-" i ",k," lambda[i] "," bytes "," 35 - i ",600,100,10," \
+                    "1000,1000,4"
+                print name "-compact-" i ",k," lambda[i] "," bytes * share "," 35 - i "," \
+                    bits * 100 / 8 ",100,20," estimate ",1000," 4 * times
+            }
+    }'
+}
+states() { sed '1d; s/\([^,]*\),.*/done \1/' "$out/bd_rate.csv" >"$out/states"; }
+
+rows 0.7 18 1.25 1004 >"$out/bd_rate.csv" && states && make_page || fail page "not made"
+check met "$page" 'Bars: 4 met, 0 missed, 0 not run yet.' \
+    'still -30.0 %, turn -30.0 %' \
+    '18.0 to 18.0 bits' '5.0 ms for 4.0 ms, 1.25 times' 'at most +0.40 %' \
+    '| still | -30.0 % (cubic) |' '| turn-before-1 | 0.001 | 160000 | 34.00 | 100 | 48.0 |'
+rows 0.8 21 1.75 1011 >"$out/bd_rate.csv" && make_page || fail page "not made"
+check missed "$page" 'Bars: 0 met, 4 missed, 0 not run yet.' \
+    'still -20.0 %, turn -20.0 %' \
+    '21.0 to 21.0 bits' '1.75 times' '+1.10 %'
+rows 0.7 18 1.25 1004 | grep -v '^turn-compact-[34]' >"$out/bd_rate.csv" && states && make_page ||
+    fail page "not made"
+check incomplete "$page" 'Bars: 1 met, 0 missed, 3 not run yet.' \
+    '| still -30.0 % | not run yet |' \
+    '14 of 16 rows are there' '| turn-compact-4 | not run yet |'
+rm "$out/bd_rate.csv" && : >"$out/states" && make_page || fail page "not made"
+check empty "$page" 'Bars: 0 met, 0 missed, 4 not run yet.' '| turn | not run yet |'
+exit $bad
