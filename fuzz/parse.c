@@ -281,9 +281,9 @@ static int chunk(parser *p, const ted4_chunk_place *place)
     case TED4_NETE: nete(p, &r); break;
     case TED4_NETR: values(p, &r, &s->netr, s->shape.n_netr); break;
     case TED4_BANK:
-        values(p, &r, &s->bank, s->shape.n_bank);
-        if (s->bank.n == 0)
+        if (s->shape.n_bank == 0)
             return 0;
+        values(p, &r, &s->bank, s->shape.n_bank);
         break;
     case TED4_POSN: positions(p, &r); break;
     case TED4_TILE: tile(p, &r); break;
