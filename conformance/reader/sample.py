@@ -17,6 +17,7 @@ from header import ELEMENTS, read_header
 from integer_networks import HIDDEN_BITS, plan, read_networks, PHASE_BITS
 from positions import Positions, morton
 from rans import TOTAL, lane_count
+from sample_compact import code_slots, coded_nete, netr_groups, random_blob, random_places
 from shapes import hyperprior_shape, slice_shapes, tier_r_shapes, values_of
 from tile import Tile
 from verdict import Refusal
@@ -71,8 +72,8 @@ def head_payload(elements):
 
 
 def random_nete(rng, h):
-    """Weights of many sizes, up to what R-NET-006 allows; half of the layers are not on the integer
-    grid."""
+    """Shifts and weights of many sizes, up to what R-NET-006 allows; half of the layers are not on
+    the integer grid."""
     shifts, values = [], []
     slices = [(s, h.context_bits, 32767) for s in slice_shapes(h)]
     for shape, bits, amplitude in [(hyperprior_shape(h), PHASE_BITS, 4096)] + slices:
@@ -89,7 +90,7 @@ def random_nete(rng, h):
             values += [rng.uniform(-1, 1) * bound / 2 ** (k + layer["f"])
                        for k, bound in zip(s, reach)]
             shifts += s
-    return bytes(shifts) + b"\0" + pack_values(values)
+    return shifts, values
 
 
 def pack_values(values):
@@ -129,15 +130,7 @@ class DrawnSubstream:
         return int(one)
 
     def finish(self):
-        """9.2 backwards: from the final states to the initial ones."""
-        states, words = [TOTAL] * self.lanes, []
-        for lane, first, freq in reversed(self.taken):
-            x = states[lane]
-            if x >= freq << 16:
-                words.append(x & 0xFFFF)
-                x >>= 16
-            states[lane] = (x // freq << 16) + first + x % freq
-        self.bytes = struct.pack("<%dI%dH" % (self.lanes, len(words)), *states, *reversed(words))
+        self.bytes = code_slots(self.taken, self.lanes)
 
 
 class DrawnTile(Tile):
@@ -163,35 +156,48 @@ class DrawnTile(Tile):
         return DrawnSubstream(self.rng, n)
 
 
-def random_stream(seed, anchors=None, changes=None):
-    """The bytes of a valid file; `changes` replace elements of the header. A draw that no symbols
-    could make valid is drawn again."""
+def random_stream(seed, anchors=None, changes=None, compact=False):
+    """The bytes of a valid file; `changes` replace elements of the header; `compact`: of that
+    profile. A draw that no symbols could make valid, or with fewer bits than R-ENT-016 asks for, is
+    drawn again."""
     for attempt in range(1000):
         rng = random.Random("%s %d" % (seed, attempt))
         try:
-            return draw_stream(rng, anchors or rng.choice((1, 2, 30, 70, 150)), changes or {})
+            return draw_stream(rng, anchors or rng.choice((1, 2, 30, 70, 150)), changes or {},
+                               compact)
         except Refusal as refusal:
-            if refusal.error not in ("att.tau-order", "ent.symbol-range", "ent.escape"):
+            if refusal.error not in ("att.tau-order", "ent.symbol-range", "ent.escape",
+                                     "ent.size"):
                 raise
     raise ValueError("no stream for this seed")
 
 
-def draw_stream(rng, anchors, changes):
+def front_payloads(rng, h, compact):
+    """NETE, NETR, BANK and POSN; in profile Compact each blob is raw or coded."""
+    shifts, values = random_nete(rng, h)
+    posn = random_places(rng, h.n_anchors) if compact else random_positions(rng, h.n_anchors)
+    coded = [compact and rng.random() < 0.8 for _ in range(3)]
+    n_netr, n_bank = values_of(s for _, s in tier_r_shapes(h)), h.bank_rows * h.bank_dim
+    raw = [b"\0" + pack_values([rng.uniform(-1, 1) for _ in range(n)]) for n in (n_netr, n_bank)]
+    return (coded_nete(h, shifts, values) if coded[0]
+            else bytes(shifts) + b"\0" + pack_values(values),
+            random_blob(rng, netr_groups(h)) if coded[1] else raw[0],
+            random_blob(rng, [[(n_bank, None)]]) if coded[2] and n_bank else raw[1], posn)
+
+
+def draw_stream(rng, anchors, changes, compact):
     elements = random_header(rng, anchors)
     elements.update(changes)
     head = head_payload(elements)
     h = read_header(Payload(head, 0, len(head)), 31, 1 << 30)
     model = SimpleNamespace(header=h, tiles=[])
-    nete, posn = random_nete(rng, h), random_positions(rng, h.n_anchors)
-    model.hyperprior, model.slice_networks = read_networks(Payload(nete, 0, len(nete)), h)
-    model.positions = Positions(Payload(posn, 0, len(posn)), h.n_anchors)
-    netr = b"\0" + pack_values(
-        [rng.uniform(-1, 1) for _ in range(values_of(s for _, s in tier_r_shapes(h)))])
-    bank = b"\0" + pack_values([rng.uniform(-1, 1) for _ in range(h.bank_rows * h.bank_dim)])
+    nete, netr, bank, posn = front_payloads(rng, h, compact)
+    model.hyperprior, model.slice_networks = read_networks(Payload(nete, 0, len(nete), compact), h)
+    model.positions = Positions(Payload(posn, 0, len(posn), compact), h.n_anchors)
     chunks = chunk(b"HEAD", head) + chunk(b"NETE", nete) + chunk(b"NETR", netr)
     chunks += (chunk(b"BANK", bank) if h.phi_dim else b"") + chunk(b"POSN", posn)
     for number in range(h.n_tiles):
         model.tiles.append(DrawnTile(rng, model, number))
         chunks += chunk(b"TILE", model.tiles[-1].payload_bytes)
     chunks += chunk(b"ENDS", xxh3_128(Model.decoded_integers(model)))
-    return MAGIC + bytes((1, 0, 0, 31)) + chunks
+    return MAGIC + bytes((1, 2 if compact else 0, int(compact), 31)) + chunks

@@ -208,8 +208,10 @@ static void test_mutator(void **state)
         assert_memory_equal(a, b, size);
         met[decode(a, ted4_without_tail(a, size, 32), &info)]++;
         (void)fuzz_find("two_decoders")(a, size);
-        size = fuzz_cross_files(file[n].data, file[n].size, file[(n + 1) % n_files].data,
-                                file[(n + 1) % n_files].size, a, CAPACITY, i);
+        const int other = (n + 1 + (int)i / n_files) % n_files;
+
+        size = fuzz_cross_files(file[n].data, file[n].size, file[other].data, file[other].size, a,
+                                CAPACITY, i);
         assert_true(size <= CAPACITY);
         (void)decode(a, size, &info);
     }
