@@ -26,7 +26,7 @@
  *                                          file itself does not change
  *     do pack REF WAY FAULT                packs the blob's values again, with a fault
  *     do blocks REF WORD...                packs them in blocks that the words spell out: blocks.h
- *     do tree GRID X:Y:Z ...; do pack REF coded       see break_coded.h
+ *     do tree GRID X:Y:Z ...; do pack REF coded [N]   see break_coded.h
  *     do pack-zeros REF N                  packs a blob of N bytes of zeros
  *     do inject TILE SUB SYMBOL value K | escape E low|high | ones N      see inject.h
  *     do symbol TYPE COMP ANCHOR K         sets a symbol that contradicts another one
@@ -372,7 +372,7 @@ static void pack(conf_stream *s, const conf_build *b, const conf_line *l)
     const size_t head = conf_word_is(l, 2, "NETE") ? b->scene->shape.n_units : 0;
     uint8_t *bytes;
 
-    if (l->n == 4 && conf_word_is(l, 3, "coded")) {
+    if (conf_word_is(l, 3, "coded")) {
         conf_coded_blob(p, head, b->scene, blob, l);
         return;
     }

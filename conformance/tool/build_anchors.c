@@ -4,6 +4,8 @@
  *     positions tiny                       subnormal binary16
  *     positions bit B                      two anchors whose x differ only in bit B of the pattern;
  *                                          14: in the sign
+ *     positions block BITS SIDE            three of four cells, at random, of a cube of SIDE^3 of
+ *                                          them; coordinates are 0 .. SIDE - 1 over 2^BITS
  *     positions at X:Y:Z ...               patterns in hexadecimal; they are sorted, duplicates are
  *                                          dropped, and n_anchors of them must remain
  *     dynamic random | all | none | alternate | first N
@@ -68,6 +70,23 @@ static void positions_bit(conf_build *b, const conf_line *l)
     keep(b, conf_line_number(l, 2, 0, 14) == 14 ? sign : p, 2);
 }
 
+static void positions_block(conf_build *b, const conf_line *l)
+{
+    const long long bits = conf_line_number(l, 2, 0, 11), side = conf_line_number(l, 3, 1, 64);
+    uint16_t *p = conf_alloc((size_t)(side * side * side), 6);
+    size_t n = 0;
+
+    for (long long i = 0; i < side * side * side; i++) {
+        const long long place[3] = { i / side / side, i / side % side, i % side };
+
+        for (size_t j = 0; j < 3; j++)
+            p[3 * n + j] = ted4_float_to_half((float)place[j] / (float)(1 << bits));
+        n += conf_in(&b->chance, 0, 3) > 0;
+    }
+    keep(b, p, n);
+    free(p);
+}
+
 void conf_build_positions(conf_build *b)
 {
     const conf_line *const l = conf_line_find(b->recipe, "positions");
@@ -82,6 +101,10 @@ void conf_build_positions(conf_build *b)
     }
     if (l != NULL && conf_word_is(l, 1, "bit")) {
         positions_bit(b, l);
+        return;
+    }
+    if (l != NULL && conf_word_is(l, 1, "block")) {
+        positions_block(b, l);
         return;
     }
     p = conf_alloc(tries, 6);

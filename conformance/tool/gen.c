@@ -51,12 +51,12 @@ static void print_member(conf_bytes *b, const char *key, const json_t *value, in
     const int lines = json_is_array(value) && json_is_object(json_array_get(value, 0)) &&
                       json_array_size(value) > 8;
 
-    conf_print(b, " \"%s\":", key);
+    conf_print(b, "\"%s\":", key);
     if (lines) {
         for (size_t i = 0; i < json_array_size(value); i++) {
             char *const text = json_dumps(json_array_get(value, i), JSON_COMPACT);
 
-            conf_print(b, "%s\n  %s", i == 0 ? "[" : ",", text);
+            conf_print(b, "%s\n%s", i == 0 ? "[" : ",", text);
             free(text);
         }
         conf_print(b, "]");

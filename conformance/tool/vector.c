@@ -255,10 +255,9 @@ int conf_vector_make(conf_vector *v, const conf_recipe *r, const char *suite)
     make_file(v, &b, &s, r, suite, &valid);
     snprintf(v->folder, sizeof v->folder, "%s", conf_line_find(r, "category")->word[1]);
     snprintf(name, sizeof name, "%s.ted4", r->id);
-    d = v->descriptor = json_pack("{s:s, s:i, s:s, s:s, s:I, s:s, s:s, s:s, s:i}", "id", r->id,
-                                  "schema", 1, "category", v->folder, "file", name, "bytes",
-                                  (json_int_t)v->file.size, "since", "1.0.0", "status", "active",
-                                  "profile",
+    d = v->descriptor = json_pack("{s:s, s:i, s:s, s:s, s:I, s:s, s:s, s:i}", "id", r->id, "schema",
+                                  1, "category", v->folder, "file", name, "bytes",
+                                  (json_int_t)v->file.size, "status", "active", "profile",
                                   v->file.size > 10 && v->file.data[10] == 1 ? "Compact" : "Main",
                                   "level", v->file.size > 11 ? v->file.data[11] : 0);
     hashes(&v->file, d);
@@ -280,8 +279,7 @@ int conf_vector_make(conf_vector *v, const conf_recipe *r, const char *suite)
     if (demand != NULL)
         json_object_set_new(d, "demand",
                             conf_word_is(demand, 1, "large") ? json_string("large") : json_true());
-    json_object_set_new(d, "origin",
-                        json_pack("{s:s, s:s}", "generator", "ted4conf gen", "recipe", r->file));
+    json_object_set_new(d, "origin", json_pack("{s:s}", "recipe", r->file));
     json_object_set_new(d, "license", json_string("CC0-1.0"));
     answer = (saved != NULL ? conf_answer_lenient : conf_answer)(
         &v->file, json_object_get(d, "queries"), conf_knobs_of(d));
