@@ -1,10 +1,11 @@
 # What tests of the strict decoder need beside the libraries; included by the Makefile.
-$B/tests/decoder/test_lenient: $(patsubst %,$B/fuzz/%.o,fix_hashes parse)
+$B/tests/decoder/test_lenient: $(patsubst %,$B/fuzz/%.o,fix_hashes parse places)
 $B/tests/decoder/test_canonical $B/tests/decoder/test_hostile: \
-    $(patsubst %,$B/fuzz/%.o,fix_hashes parse)
-$B/tests/decoder/test_validate: $(patsubst %,$B/fuzz/%.o,fix_hashes parse mutate fields)
+    $(patsubst %,$B/fuzz/%.o,fix_hashes parse places)
+$B/tests/decoder/test_validate: \
+    $(patsubst %,$B/fuzz/%.o,fix_hashes parse places mutate mutate_scene fields)
 $B/tests/decoder/test_advise $B/tests/decoder/test_starved: \
-    $(patsubst %,$B/fuzz/%.o,fix_hashes parse)
+    $(patsubst %,$B/fuzz/%.o,fix_hashes parse places)
 
 # Class T (spec E): thresholds by rule, and a judge of records.
 CLASS_T_OBJ = $B/conformance/tolerance/class_t.o $(SPEC_EVALS:%=$B/tests/spec/eval_%.o)
