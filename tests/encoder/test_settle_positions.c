@@ -191,6 +191,66 @@ static void test_main(void **state)
     ted4_trainer_finish(&t);
 }
 
+/* The grid with the fewest bits, where all offsets have magnitude 1 and all sizes are 2^size: an
+ * anchor's position has 3 bits a level, and each of its offsets grows by the variance of a uniform
+ * distribution over a cell. */
+static int cheapest(int size, int offsets)
+{
+    double least = INFINITY;
+    int best = 0;
+
+    for (int g = 6; g <= 12; g++) {
+        const double moved = exp2(1 - g - size), variance = moved * moved / 12;
+        const double bits = 3 * g + 3 * offsets * 0.5 * log2(1 + variance / (acos(-1.0) / 2));
+
+        if (bits < least) {
+            least = bits;
+            best = g;
+        }
+    }
+    return best;
+}
+
+static void test_cheapest_grid(void **state)
+{
+    int seen[13] = { 0 };
+
+    (void)state;
+    for (int size = -14; size <= 0; size++) {
+        ted4_trainer t;
+
+        begin(&t, 1, 0, 30);
+        for (size_t i = 0; i < 30; i++) {
+            for (int j = 0; j < 3; j++)
+                *value(&t, TED4_ROW_VALUE, i, t.layout.first[TED4_SCALING] + j) = (float)size;
+            for (int c = 0; c < 3 * t.layout.head.n_offsets; c++)
+                *value(&t, TED4_ROW_VALUE, i, t.layout.first[TED4_OFFSET] + c) =
+                    (i + (size_t)c) % 2 ? 1.0f : -1.0f;
+        }
+        assert_int_equal(ted4_position_bits(&t), 16); /* before stage 2 */
+        assert_int_equal(ted4_settle_positions(&t), 0);
+        assert_int_equal(ted4_position_bits(&t), cheapest(size, t.layout.head.n_offsets));
+        check_cells(&t, ted4_position_bits(&t));
+        seen[ted4_position_bits(&t)]++;
+        ted4_trainer_finish(&t);
+    }
+    for (int g = 6; g <= 12; g++)
+        assert_true(seen[g] > 0);
+}
+
+/* A grid that no file can have is refused. */
+static void test_impossible_grid(void **state)
+{
+    ted4_trainer t;
+
+    (void)state;
+    cloud_make(&cloud, FRAMES);
+    cloud.options.grid = 5;
+    assert_int_equal(ted4_trainer_init(&t, &cloud.options, &cloud.data, NULL), -1);
+    assert_non_null(strstr(t.message.text, "grid"));
+    ted4_trainer_finish(&t);
+}
+
 /* The writer finds the grid, whose order the scene has. */
 static void test_export(void **state)
 {
@@ -214,7 +274,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_gaussians_stay),   cmocka_unit_test(test_crowded_cell),
         cmocka_unit_test(test_second_in_a_cell), cmocka_unit_test(test_main),
-        cmocka_unit_test(test_export),
+        cmocka_unit_test(test_export),           cmocka_unit_test(test_cheapest_grid),
+        cmocka_unit_test(test_impossible_grid),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -219,10 +219,11 @@ static int numbers_are_possible(const ted4_trainer *t)
     return (t->phase.stage2 == 0 || t->phase.stage2 == 1) &&
            (t->phase.integer == 0 || t->phase.integer == 1) &&
            t->phase.integer <= t->phase.stage2 && t->iteration <= ted4_trainer_total(t) &&
-           t->phase.stage2_start <= t->iteration && t->voxel >= TED4_FINEST_VOXEL &&
-           t->voxel <= 1e30 && t->search.decided >= TED4_DECIDED_NOTHING &&
-           t->search.decided <= TED4_DECIDED_ALL && t->monitor.state.factor > 0 &&
-           t->monitor.state.factor <= 1 && t->monitor.state.rollbacks <= TED4_ROLLBACKS;
+           t->phase.stage2_start <= t->iteration && t->phase.grid >= 0 && t->phase.grid <= 12 &&
+           t->voxel >= TED4_FINEST_VOXEL && t->voxel <= 1e30 &&
+           t->search.decided >= TED4_DECIDED_NOTHING && t->search.decided <= TED4_DECIDED_ALL &&
+           t->monitor.state.factor > 0 && t->monitor.state.factor <= 1 &&
+           t->monitor.state.rollbacks <= TED4_ROLLBACKS;
 }
 
 /* Writes or reads the last good state. It is a state of this format, and is checked when it is
@@ -273,6 +274,7 @@ static void walk_capacity(stream *s, ted4_trainer *t)
     ted4_header began;
 
     if (!s->writing) {
+        t->phase.grid = 0;
         t->search.decided = 0;
         ted4_weight_grid_full(t->net.bits);
     }
@@ -285,6 +287,8 @@ static void walk_capacity(stream *s, ted4_trainer *t)
         t->phase.rate_norm_header = t->layout.head;
         n = 0;
     }
+    if (may_have_trials(t))
+        put(s, &t->phase.grid, sizeof t->phase.grid);
     if (!s->writing && !s->failed) {
         ted4_header_make(&began, &t->opt, t->data);
         free(t->search.trial);

@@ -86,6 +86,7 @@ typedef struct {
     int stage2, integer;
     int clock_stopped;     /* render everything at time 0 and without activation */
     uint64_t stage2_start; /* Adam's step count restarts there */
+    int grid; /* bits a coordinate of positions (spec 8.2); 0: binary16, as before stage 2 */
     /* The initial header; from the start of stage 2 on, the header at that start. The weights of a
      * bit and of a mask refer to this model, whatever becomes of it later. */
     ted4_header rate_norm_header;

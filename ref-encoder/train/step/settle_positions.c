@@ -9,11 +9,15 @@
 #include "norm/half.h"
 #include "norm/octree.h"
 
-enum { NEIGHBOURS = 27, HASHED = 64 };
+enum { NEIGHBOURS = 27, HASHED = 64, COARSEST_GRID = 6, FINEST_GRID = 12 };
+
+#define PI             0x1.921fb54442d18p1
+/* Of offsets, so that it is not 0 where all are. */
+#define LEAST_VARIANCE 1e-6
 
 unsigned ted4_position_bits(const ted4_trainer *t)
 {
-    return t->opt.profile == TED4_PROFILE_COMPACT ? (unsigned)t->opt.grid : TED4_OCTREE_DEPTH;
+    return t->phase.grid != 0 ? (unsigned)t->phase.grid : TED4_OCTREE_DEPTH;
 }
 
 /* bench/compact.md: an octree of 12 bits takes 18 to 24 bits an anchor, and each level 3. */
@@ -181,13 +185,73 @@ static int settle_on_grid(const ted4_trainer *t, unsigned bits, uint32_t *order,
     return 0;
 }
 
+/* Returns the mean magnitude of offsets along an axis, in units of their anchors' sizes. */
+static double mean_offset(const ted4_trainer *t, int axis)
+{
+    const int K = t->layout.head.n_offsets;
+    double sum = 0;
+
+    for (size_t i = 0; i < t->anchors.n; i++)
+        for (int k = 0; k < K; k++)
+            sum += (double)fabsf(*ted4_anchor_value(&t->anchors, TED4_ROW_VALUE, i,
+                                                    t->layout.first[TED4_OFFSET] + 3 * k + axis));
+    return sum / ((double)K * (double)t->anchors.n);
+}
+
+/* Returns the bits by which offsets grow, in all anchors, when positions move to cells of a width:
+ * each position moves by an amount that is uniform in its cell, of variance width^2 / 12, and all
+ * offsets of its anchor move back by that, in units of its size. Offsets are taken for Gaussian,
+ * with the deviation that goes with their mean magnitude, and the bits of a Gaussian grow with the
+ * logarithm of its deviation. */
+static double bits_of_offsets(const ted4_trainer *t, double width)
+{
+    const double gaussian = 0.5 * PI;
+    double bits = 0;
+
+    for (int j = 0; j < 3; j++) {
+        const double mean = mean_offset(t, j), variance = gaussian * mean * mean + LEAST_VARIANCE;
+
+        for (size_t i = 0; i < t->anchors.n; i++) {
+            const double size = (double)ted4_math_exp2f(*ted4_anchor_value(
+                &t->anchors, TED4_ROW_VALUE, i, t->layout.first[TED4_SCALING] + j));
+            const double moved = width / size;
+
+            bits += 0.5 * ted4_math_log2(1.0 + moved * moved / (12.0 * variance));
+        }
+    }
+    return bits * (double)t->layout.head.n_offsets;
+}
+
+/* Returns the bits of the grid with which positions and offsets take the fewest bits: a level of
+ * the octree takes 3 bits an anchor. */
+static int cheapest_grid(const ted4_trainer *t)
+{
+    double least = INFINITY;
+    int best = FINEST_GRID;
+
+    for (int g = FINEST_GRID; g >= COARSEST_GRID; g--) {
+        const double bits = 3.0 * (double)g * (double)t->anchors.n +
+                            bits_of_offsets(t, ldexp(2.0, -g));
+
+        if (bits < least) {
+            least = bits;
+            best = g;
+        }
+    }
+    return best;
+}
+
 int ted4_settle_positions(ted4_trainer *t)
 {
     ted4_anchors *a = &t->anchors;
-    const unsigned bits = ted4_position_bits(t);
     uint32_t *order = malloc((a->n + 1) * sizeof *order);
     size_t n = 0;
     int bad = order == NULL;
+
+    if (t->opt.profile == TED4_PROFILE_COMPACT)
+        t->phase.grid = t->opt.grid != 0 ? t->opt.grid : cheapest_grid(t);
+
+    const unsigned bits = ted4_position_bits(t);
 
     round_to_half(a);
     bad = bad || ted4_anchors_sort(a, NULL) != 0;

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "norm/half.h"
 #include "train/densify/camera_colour_init.h"
 #include "train/densify/camera_exposure_init.h"
 #include "train/densify/short_lived.h"
@@ -76,6 +77,9 @@ static int begin(ted4_trainer *t, const ted4_header *h)
         return ted4_trainer_fail(t,
                                  "batch needs heads of opacity and covariance that do not depend "
                                  "on the view (view 0 or 1)");
+    if (t->opt.grid != 0 && !ted4_grid_exists((unsigned)t->opt.grid))
+        return ted4_trainer_fail(t, "grid: no file has positions of %d bits; 0, or 6 to 12",
+                                 t->opt.grid);
     ted4_layout_make(&t->layout, h);
     t->phase.rate_norm_header = t->layout.head;
     ted4_weight_grid_full(t->net.bits);
