@@ -15,7 +15,7 @@ COMMAND = "`bench/bd_rate.sh`"
 def write(runs, _charts, _results, _pages):
     """{name of the file: text}."""
     bars = Bars()
-    changes = {scene: Change(runs, scene, "compact", "before") for scene in runs.scenes}
+    changes = {scene: change_of(runs, scene, "compact") for scene in runs.scenes}
     rate_bar(runs, bars, changes)
     position_bar(runs, bars)
     time_bar(runs, bars)
@@ -24,16 +24,21 @@ def write(runs, _charts, _results, _pages):
     page.heading("Profile Compact: rate and quality", 1)
     page.prose("""`make bd-rate` writes this page from [bd_rate.csv](bd_rate.csv); the runs are
         those of bd_rate.txt, in small trainings. "before" is the encoder without profile Compact,
-        at its own defaults; "compact" is `--profile compact`, whose stage 2 is twice as long. PSNR
+        at its own defaults; "compact" is `--profile compact`, whose stage 2 is three times as long;
+        "once" and "twice" are the same with as many steps as "before", and with twice as many. PSNR
         is that of held-out pictures, drawn from the decoded file. † marks rows that other sources
         made.""")
     page.prose(f"{sum(run.has() for run in runs.all)} of {len(runs.all)} rows are there"
                + made_with(runs.all) + ".")
     page.prose(bars.summary())
     bars.show(page, "command, then `python3 -m bench.pages bd_rate`")
-    rate_table(runs, page, changes)
+    rate_table(runs, page)
     run_table(runs, page)
     return {"bd_rate.md": page.text()}
+
+
+def change_of(runs, scene, variant):
+    return Change(runs, scene, variant, "before")
 
 
 def is_complete(runs, scene):
@@ -103,17 +108,18 @@ def estimate_bar(runs, bars):
                      len(runs.all)), COMMAND)
 
 
-def rate_table(runs, page, changes):
+def rate_table(runs, page):
     page.heading("BD-rate")
-    page.table("scene", "BD-rate", "PSNR at equal bytes", "rows")
-    for scene, change in changes.items():
-        rows = runs.present(scene, "before") + runs.present(scene, "compact")
-        wanted = runs.of(scene, "before") + runs.of(scene, "compact")
-        if not rows:
-            page.row_missing(scene)
-            continue
-        page.row(scene + mark(rows), change.bd_rate_text(), signed(change.psnr, 2, " dB"),
-                 f"{len(rows)} of {len(wanted)}")
+    page.table("scene", "variant", "BD-rate", "PSNR at equal bytes", "rows")
+    for scene in runs.scenes:
+        for variant in runs.variants:
+            if variant == "before" or not runs.of(scene, variant):
+                continue
+            rows = runs.present(scene, "before") + runs.present(scene, variant)
+            wanted = len(runs.of(scene, "before") + runs.of(scene, variant))
+            change = change_of(runs, scene, variant)
+            page.row(scene, variant + mark(rows), change.bd_rate_text(),
+                     signed(change.psnr, 2, " dB"), f"{len(rows)} of {wanted}")
 
 
 def run_table(runs, page):

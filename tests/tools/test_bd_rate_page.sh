@@ -42,7 +42,7 @@ rows 0.7 18 1.25 1004 >"$out/bd_rate.csv" && states && make_page || fail page "n
 check met "$page" 'Bars: 4 met, 0 missed, 0 not run yet.' \
     'still -30.0 %, turn -30.0 %' \
     '18.0 to 18.0 bits' '5.0 ms for 4.0 ms, 1.25 times' 'at most +0.40 %' \
-    '| still | -30.0 % (cubic) |' '| turn-before-1 | 0.001 | 160000 | 34.00 | 100 | 48.0 |'
+    '| still | compact | -30.0 % (cubic) |' '| turn-before-1 | 0.001 | 160000 | 34.00 | 100 | 48.0 |'
 rows 0.8 21 1.75 1011 >"$out/bd_rate.csv" && make_page || fail page "not made"
 check missed "$page" 'Bars: 0 met, 4 missed, 0 not run yet.' \
     'still -20.0 %, turn -20.0 %' \
@@ -53,5 +53,5 @@ check incomplete "$page" 'Bars: 1 met, 0 missed, 3 not run yet.' \
     '| still -30.0 % | not run yet |' \
     '14 of 16 rows are there' '| turn-compact-4 | not run yet |'
 rm "$out/bd_rate.csv" && : >"$out/states" && make_page || fail page "not made"
-check empty "$page" 'Bars: 0 met, 0 missed, 4 not run yet.' '| turn | not run yet |'
+check empty "$page" 'Bars: 0 met, 0 missed, 4 not run yet.' '| turn | compact | - | - | 0 of 8 |'
 exit $bad
