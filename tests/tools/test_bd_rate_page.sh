@@ -40,9 +40,9 @@ states() { sed '1d; s/\([^,]*\),.*/done \1/' "$out/bd_rate.csv" >"$out/states"; 
 
 rows 0.7 18 1.25 1004 >"$out/bd_rate.csv" && states && make_page || fail page "not made"
 check met "$page" 'Bars: 4 met, 0 missed, 0 not run yet.' \
-    'still -30.0 %, turn -30.0 %' \
-    '18.0 to 18.0 bits' '5.0 ms for 4.0 ms, 1.25 times' 'at most +0.40 %' \
-    '| still | compact | -30.0 % (cubic) |' '| turn-before-1 | 0.001 | 160000 | 34.00 | 100 | 48.0 |'
+    'still -30.0 %, turn -30.0 %' '18.0 to 18.0 bits' '5.0 ms for 4.0 ms, 1.25 times' \
+    'at most +0.40 %' '| still | compact | -30.0 % (cubic) |' \
+    '| turn-before-1 | 0.001 | 160000 | 34.00 | 100 | 48.0 |'
 rows 0.8 21 1.75 1011 >"$out/bd_rate.csv" && make_page || fail page "not made"
 check missed "$page" 'Bars: 0 met, 4 missed, 0 not run yet.' \
     'still -20.0 %, turn -20.0 %' \
