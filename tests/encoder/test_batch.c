@@ -24,8 +24,32 @@ static ted4_train_options options(int batch)
 
 /* ---- the order of pictures ---- */
 
-/* In each round, every training picture comes once; a batch is of one time and as full as it can
- * be: the balls have four cameras, of which some pictures may be held out. */
+/* Goes through a round, and counts how often each picture comes. Returns the number of batches, and
+ * in *first the first picture. */
+static size_t run_round(ted4_trainer *t, uint32_t *seen, uint32_t *first)
+{
+    size_t batches = 0;
+
+    for (uint32_t taken = 0; taken == 0 || taken < t->order.end; batches++) {
+        const uint32_t *item;
+        size_t n;
+
+        assert_int_equal(ted4_next_pictures(t, &item, &n), 0);
+        assert_in_range(n, 1, (size_t)t->opt.batch);
+        if (taken == 0)
+            *first = item[0];
+        for (size_t i = 0; i < n; i++) {
+            assert_int_equal(balls.pictures[item[i]].frame, balls.pictures[item[0]].frame);
+            seen[item[i]]++;
+        }
+        taken += (uint32_t)n;
+        assert_int_equal(t->order.next, taken);
+    }
+    return batches;
+}
+
+/* A batch is of one time and as full as it can be: the balls have four cameras, of which some
+ * pictures may be held out. In each round, a picture of which none of its time waits comes once. */
 static void test_order(void **state)
 {
     (void)state;
@@ -36,56 +60,74 @@ static void test_order(void **state)
 
         ball_begin(&t, &o, &balls, NULL);
         assert_true(balls.n_pictures <= 64);
-        for (uint32_t round = 0; round < 3; round++)
-            for (uint32_t taken = 0; taken < t.order.n;) {
-                const uint32_t *item;
-                size_t n;
-
-                assert_int_equal(ted4_next_pictures(&t, &item, &n), 0);
-                assert_in_range(n, 1, (size_t)batch);
-                if (taken == 0)
-                    first[round] = item[0];
-                for (size_t i = 0; i < n; i++) {
-                    assert_int_equal(balls.pictures[item[i]].frame, balls.pictures[item[0]].frame);
-                    assert_int_equal(seen[item[i]]++, round);
-                }
-                taken += (uint32_t)n;
-                assert_int_equal(t.order.next, taken);
-            }
+        for (uint32_t round = 1; round <= 3; round++) {
+            run_round(&t, seen, &first[round - 1]);
+            for (uint32_t i = 0; i < t.order.n; i++)
+                assert_in_range(seen[t.order.item[i]], batch == 1 || batch > 3 ? round : round - 1,
+                                round);
+        }
         assert_true(first[0] != first[1] || first[1] != first[2]);
         ted4_trainer_finish(&t);
     }
 }
 
-/* The pictures of a time are divided evenly, and differently in each round. */
-static void test_even_batches(void **state)
+/* Of the four pictures of a time, three make a batch, and each waits in every fourth round. A time
+ * of two has batches of two. */
+static void test_full_batches(void **state)
 {
     const ted4_train_options o = options(3);
-    int other = 0;
+    uint32_t seen[64] = { 0 }, first;
     ted4_trainer t;
 
     (void)state;
     ball_begin(&t, &o, &balls, NULL);
-    for (uint32_t i = 0, n = 0; i < balls.n_pictures; i++) {
+    t.order.n = 0;
+    for (uint32_t i = 0, last = 0; i < balls.n_pictures; i++) {
         balls.pictures[i].is_test = 0;
-        t.order.item[n++] = i;
-        t.order.n = n;
+        last += balls.pictures[i].frame == 0;
+        if (balls.pictures[i].frame > 0 || last <= 2)
+            t.order.item[t.order.n++] = i;
     }
     t.order.next = t.order.n;
-    for (int round = 0; round < 20; round++) {
-        for (uint32_t taken = 0; taken < t.order.n;) {
-            const uint32_t *item;
-            size_t n;
+    for (uint32_t round = 1; round <= 20; round++) {
+        uint32_t least = UINT32_MAX, most = 0;
 
-            assert_int_equal(ted4_next_pictures(&t, &item, &n), 0);
-            /* Two batches of one time that follow each other may be divided anew: 3 and 1. */
-            assert_in_range(n, 1, 3);
-            other += n == 2;
-            taken += (uint32_t)n;
+        assert_int_equal(run_round(&t, seen, &first), FRAMES);
+        for (uint32_t i = 0; i < t.order.n; i++) {
+            const uint32_t item = t.order.item[i], count = seen[item];
+
+            if (balls.pictures[item].frame == 0)
+                assert_int_equal(count, round);
+            else
+                assert_in_range(count, round * 3 / 4, (round * 3 + 3) / 4);
+            least = balls.pictures[item].frame > 0 && count < least ? count : least;
+            most = balls.pictures[item].frame > 0 && count > most ? count : most;
         }
+        assert_int_equal(most - least, round % 4 != 0);
     }
-    /* Of 20 rounds with two batches for each of five times, most are pairs. */
-    assert_true(other > 120);
+    ted4_trainer_finish(&t);
+}
+
+/* A training that begins in the middle of a round, as from a checkpoint, ends it at the same
+ * picture. */
+static void test_round_goes_on(void **state)
+{
+    const ted4_train_options o = options(3);
+    uint32_t seen[64] = { 0 }, first;
+    ted4_trainer t;
+
+    (void)state;
+    ball_begin(&t, &o, &balls, NULL);
+    run_round(&t, seen, &first);
+
+    const uint32_t end = t.order.end, *item;
+    size_t n;
+
+    t.order.end = 0;
+    t.order.next = end - 1;
+    assert_int_equal(ted4_next_pictures(&t, &item, &n), 0);
+    assert_int_equal(t.order.end, end);
+    assert_int_equal(n, 1);
     ted4_trainer_finish(&t);
 }
 
@@ -393,11 +435,12 @@ static void test_full_view(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_order),          cmocka_unit_test(test_even_batches),
-        cmocka_unit_test(test_order_of_times), cmocka_unit_test(test_sums),
-        cmocka_unit_test(test_gradients),      cmocka_unit_test(test_other_anchors),
-        cmocka_unit_test(test_rates),          cmocka_unit_test(test_threads),
-        cmocka_unit_test(test_resume),         cmocka_unit_test(test_full_view),
+        cmocka_unit_test(test_order),         cmocka_unit_test(test_full_batches),
+        cmocka_unit_test(test_round_goes_on), cmocka_unit_test(test_order_of_times),
+        cmocka_unit_test(test_sums),          cmocka_unit_test(test_gradients),
+        cmocka_unit_test(test_other_anchors), cmocka_unit_test(test_rates),
+        cmocka_unit_test(test_threads),       cmocka_unit_test(test_resume),
+        cmocka_unit_test(test_full_view),
     };
 
     return cmocka_run_group_tests_name("batches of views", tests, set_up, tear_down);

@@ -25,6 +25,7 @@
 typedef struct {
     uint32_t *item; /* owned: picture numbers */
     uint32_t n, next;
+    uint32_t end; /* where those begin that wait for a later round; 0: not known yet */
     uint64_t key, round;
     double cameras; /* pictures per time, over the times that have any */
 } ted4_order;
