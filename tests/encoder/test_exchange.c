@@ -1,7 +1,10 @@
-/* test_exchange.c - sums over views that several processes have drawn (train/state/exchange.h,
- * view_exchange.h). The processes are threads here, which exchange through common memory.
- * SPDX-License-Identifier: BSD-2-Clause */
+/* test_exchange.c - sums over views that several processes have drawn, and over chunks
+ * (train/state/exchange.h, view_exchange.h, chunk_exchange.h). The processes are threads here,
+ * which exchange through common memory. SPDX-License-Identifier: BSD-2-Clause */
+#include <math.h>
+
 #include "rank_threads.h"
+#include "train/state/chunk_exchange.h"
 #include "train/state/view_exchange.h"
 
 enum { SIZE = (1 << 22) + 1000, STRIDE = 997 };
@@ -86,6 +89,66 @@ static void test_sums(void **state)
     }
 }
 
+/* Sums over chunks: what the ranks of one run have in common. */
+enum { CHUNK_SIZE = 1003, MOST_CHUNKS = 32 };
+
+static struct {
+    size_t n;
+    int add;
+} chunks;
+
+typedef struct {
+    ted4_exchange x;
+    ted4_view_sums sums;
+    float chunk[MOST_CHUNKS][CHUNK_SIZE], to[CHUNK_SIZE];
+} chunk_process;
+
+static void *add_chunks(void *arg)
+{
+    chunk_process *p = arg;
+    const size_t from = ted4_chunk_first(&p->x, p->x.rank, chunks.n);
+    const size_t to = ted4_chunk_first(&p->x, p->x.rank + 1, chunks.n);
+    const float *chunk[MOST_CHUNKS];
+
+    for (size_t i = 0; i < CHUNK_SIZE; i++)
+        p->to[i] = value(chunks.n, i);
+    for (size_t c = 0; c < chunks.n; c++) {
+        chunk[c] = p->chunk[c];
+        for (size_t i = 0; i < CHUNK_SIZE; i++)
+            p->chunk[c][i] = c >= from && c < to ? value(c, i) : NAN;
+    }
+    assert_int_equal(
+        ted4_chunk_exchange(&p->x, &p->sums, chunk, chunks.n, CHUNK_SIZE, chunks.add, p->to), 0);
+    return NULL;
+}
+
+static void test_chunks(void **state)
+{
+    static const struct {
+        size_t ranks, chunks;
+        int add;
+    } runs[] = { { 2, 32, 0 }, { 3, 32, 1 }, { 6, 5, 1 }, { 6, 1, 0 }, { 5, 14, 1 } };
+    static chunk_process p[MOST_RANKS];
+
+    (void)state;
+    for (size_t k = 0; k < sizeof runs / sizeof runs[0]; k++) {
+        memset(p, 0, sizeof p);
+        chunks.n = runs[k].chunks;
+        chunks.add = runs[k].add;
+        rank_run(runs[k].ranks, p, sizeof *p, add_chunks);
+        for (size_t i = 0; i < CHUNK_SIZE; i++) {
+            float sum = chunks.add ? value(chunks.n, i) + value(0, i) : value(0, i);
+
+            for (size_t c = 1; c < chunks.n; c++)
+                sum += value(c, i);
+            for (size_t r = 0; r < runs[k].ranks; r++)
+                assert_true(p[r].to[i] == sum);
+        }
+        for (size_t r = 0; r < runs[k].ranks; r++)
+            ted4_view_sums_finish(&p[r].sums);
+    }
+}
+
 /* Each view belongs to one rank, ranges are nodes of the tree, and no rank has more than twice its
  * share. One view alone belongs to all. */
 static void test_views(void **state)
@@ -138,7 +201,8 @@ static void test_alone(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = { cmocka_unit_test(test_sums), cmocka_unit_test(test_views),
-                                        cmocka_unit_test(test_alone) };
+                                        cmocka_unit_test(test_alone),
+                                        cmocka_unit_test(test_chunks) };
 
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -199,9 +199,10 @@ static size_t chunk_first(const ted4_rate_job *job, size_t chunk)
     return job->in->n_visible * chunk / job->n_chunks;
 }
 
-static void run_chunk(void *arg, size_t chunk)
+static void run_chunk(void *arg, size_t i)
 {
     const ted4_rate_job *job = arg;
+    const size_t chunk = job->from + i;
     const size_t entered = workspace_acquire(job->rate);
     ted4_rate_workspace *workspace = &job->rate->workspace[entered];
     const size_t first = chunk_first(job, job->first + chunk);
@@ -234,24 +235,42 @@ static void reduce_piece(void *arg, size_t piece)
     }
 }
 
-/* Runs n chunks from job->first on, and adds their results to the sums. */
-static void run_wave(ted4_rate_job *job, size_t n, const ted4_parallel *p, float *d_net,
-                     double *bits)
+/* Completes a wave of n chunks by what the other processes have of it. */
+static int join_wave(const ted4_rate_job *job, size_t n, float *d_nete)
+{
+    const ted4_rate_ranks *x = job->in->ranks;
+    size_t first[TED4_RATE_WAVE + 1];
+
+    for (size_t k = 0; k <= n; k++)
+        first[k] = chunk_first(job, job->first + k);
+    return x->join(x->user, job->rate->sums, first, n, d_nete);
+}
+
+/* Runs n chunks from job->first on, and adds their results to the sums. Returns 0, or -1 if memory
+ * ran out. */
+static int run_wave(ted4_rate_job *job, size_t n, const ted4_parallel *p, float *d_net,
+                    double *bits)
 {
     const ted4_layout *l = job->in->layout;
     const size_t n_pieces = (l->shape.n_nete + REDUCE_PIECE - 1) / REDUCE_PIECE;
+    const ted4_rate_ranks *x = job->d_attr != NULL ? job->in->ranks : NULL;
+    const size_t to = x != NULL ? n * (x->rank + 1) / x->n : n;
 
-    ted4_parallel_for(p, n, run_chunk, job);
+    job->from = x != NULL ? n * x->rank / x->n : 0;
+    ted4_parallel_for(p, to - job->from, run_chunk, job);
     if (job->steps_only)
-        return;
+        return 0;
+    if (x != NULL && join_wave(job, n, d_net + l->nete) != 0)
+        return -1;
     for (size_t k = 0; k < n; k++)
         for (int t = 0; t < TED4_TYPES; t++)
             bits[t] += job->rate->sums[k].bits[t];
-    if (job->d_attr != NULL) {
+    if (job->d_attr != NULL && x == NULL) {
         reduction sum = { job->rate, n, d_net + l->nete };
 
         ted4_parallel_for(p, n_pieces, reduce_piece, &sum);
     }
+    return 0;
 }
 
 /* Fills in all members of job except rate, input and the outputs, and runs the chunks. */
@@ -275,7 +294,8 @@ static int evaluate(ted4_rate_job job, const ted4_parallel *p, float *d_net, dou
 
         job.first = c;
         job.n_chunks = n_chunks;
-        run_wave(&job, left < TED4_RATE_WAVE ? left : TED4_RATE_WAVE, p, d_net, bits);
+        if (run_wave(&job, left < TED4_RATE_WAVE ? left : TED4_RATE_WAVE, p, d_net, bits) != 0)
+            return -1;
     }
     return 0;
 }

@@ -7,6 +7,24 @@
 #include "base/parallel.h"
 #include "train/model/model.h"
 
+/* The sums of one chunk, some neighbouring blocks. */
+typedef struct {
+    float *d_net; /* [n_nete] */
+    double bits[TED4_TYPES];
+} ted4_rate_sums;
+
+/* Processes that share the chunks of an evaluation with gradients: of the n of a wave, rank r
+ * evaluates those from n r / ranks to n (r + 1) / ranks. */
+typedef struct {
+    size_t rank, n;
+    void *user; /* borrowed: first argument of join */
+    /* Completes a wave of n chunks of which chunk k has the blocks first[k] to first[k + 1] of the
+     * input: gives all processes d_attr and steps of all blocks and the bits of all chunks, and
+     * adds d_net of all chunks, in their order, to d_nete[n_nete]. Returns 0, or -1 if memory ran
+     * out. */
+    int (*join)(void *user, ted4_rate_sums *sums, const size_t *first, size_t n, float *d_nete);
+} ted4_rate_ranks;
+
 typedef struct {
     const ted4_layout *layout;
     const float *net;     /* [n_net]; the NETE part is used */
@@ -18,10 +36,13 @@ typedef struct {
     const uint32_t *block; /* [n_visible] block numbers, which select the noise together with key */
     uint64_t key;          /* key of this iteration's noise */
     ted4_quant quant;
-    float bit_weight;        /* dL/d(one bit) */
-    float distortion_weight; /* factor of d_value when it is passed on to the step sizes */
-    int activation;          /* 0: tau is not coded yet (static phase) */
+    float bit_weight;             /* dL/d(one bit) */
+    float distortion_weight;      /* factor of d_value when it is passed on to the step sizes */
+    int activation;               /* 0: tau is not coded yet (static phase) */
+    const ted4_rate_ranks *ranks; /* borrowed; NULL: this process evaluates all */
 } ted4_rate_input;
+
+enum { TED4_RATE_WAVE = 32 }; /* chunks of a wave, at most */
 
 typedef struct ted4_rate ted4_rate;
 

@@ -16,7 +16,7 @@
  * number of threads, and memory does not grow with the number of visible blocks. If there are few
  * visible blocks, chunks become smaller so that a wave is still full, but never smaller than
  * TED4_RATE_LEAST, because each chunk adds a whole set of gradients. */
-enum { TED4_RATE_CHUNK = 8, TED4_RATE_LEAST = 2, TED4_RATE_WAVE = 32 };
+enum { TED4_RATE_CHUNK = 8, TED4_RATE_LEAST = 2 };
 
 /* spec 10.1: the ranges of log2(sigma / step) and log2(q / Q0) that indices can express. */
 #define TED4_S_MIN (-4.0f)
@@ -53,12 +53,6 @@ typedef struct {
     float *d_context; /* [F][32] */
 } ted4_rate_block;
 
-/* The sums of one chunk. */
-typedef struct {
-    float *d_net; /* owned: [n_nete] */
-    double bits[TED4_TYPES];
-} ted4_rate_sums;
-
 /* Workspace of one running chunk; a chunk takes any free one. */
 typedef struct {
     float *storage; /* owned: memory of everything below */
@@ -87,7 +81,7 @@ struct ted4_rate {
     size_t n_workspaces; /* entries of the three arrays below that can be used */
     ted4_rate_workspace workspace[TED4_RATE_WAVE];
     atomic_flag busy[TED4_RATE_WAVE];
-    ted4_rate_sums sums[TED4_RATE_WAVE];
+    ted4_rate_sums sums[TED4_RATE_WAVE]; /* d_net is owned */
     ted4_rate_integer integer;
 };
 
@@ -99,6 +93,7 @@ typedef struct {
     float *const *d_attr;        /* NULL: no gradients */
     float *const *steps;         /* out: [TYPES][32] q of each visible block */
     size_t first, n_chunks;      /* first chunk of the wave; total number of chunks */
+    size_t from;                 /* first chunk of the wave that this process evaluates */
     int steps_only;
     const ted4_rate_integer *integer; /* NULL: use the float networks only */
     float *lane_bits; /* out: [visible block][1 + K][32] bits of each anchor, then of each of its

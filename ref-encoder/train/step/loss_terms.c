@@ -5,6 +5,8 @@
 #include <math.h>
 
 #include "math/lane_sum.h"
+#include "train/state/block_exchange.h"
+#include "train/state/rate_exchange.h"
 #include "train/monitor/monitor.h"
 #include "train/math/random.h"
 
@@ -158,8 +160,14 @@ int ted4_update_rate(ted4_trainer *t, uint64_t key)
                            t->phase.integer ? TED4_QUANT_INTEGER : TED4_QUANT_NOISE,
                            (float)(t->opt.lambda / (fmax(chosen, 1) * params)),
                            (float)((double)s->n / (double)m),
-                           t->layout.head.activation };
+                           t->layout.head.activation,
+                           NULL };
+    ted4_rate_ranks ranks;
 
+    if (ted4_blocks_shared(t)) {
+        ranks = ted4_rate_exchange(t);
+        in.ranks = &ranks;
+    }
     if (!t->phase.integer)
         ted4_rate_pack(t->work.rate, t->net.value);
     if (m > 0 &&

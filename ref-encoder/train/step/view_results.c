@@ -4,19 +4,21 @@
 
 #include <string.h>
 
-/* What processes of one training have in common before each step. */
+/* What processes of one training have in common in each step. What they exchange after this depends
+ * on it: arrays of other sizes must not meet. */
 typedef struct {
     uint64_t iteration, anchors, pictures;
-    double loss; /* of the last step */
+    uint64_t key, views, visible, awake; /* of the order of pictures; of this step */
+    double loss;                         /* of the last step */
 } common;
 
-/* What a process tells of its views, of a step that has several. */
+/* What a process tells of its views. */
 typedef struct {
     common now;
     ted4_view_result result[TED4_MAX_VIEWS];
 } letter;
 
-static common common_of(const ted4_trainer *t)
+static common common_of(const ted4_trainer *t, size_t n)
 {
     common c;
 
@@ -24,6 +26,10 @@ static common common_of(const ted4_trainer *t)
     c.iteration = t->iteration;
     c.anchors = t->anchors.n;
     c.pictures = t->data->n_pictures;
+    c.key = t->order.key;
+    c.views = n;
+    c.visible = t->visible_blocks.n;
+    c.awake = t->visible_blocks.awake;
     c.loss = t->progress.last_loss;
     return c;
 }
@@ -31,11 +37,11 @@ static common common_of(const ted4_trainer *t)
 int ted4_view_results_gather(ted4_trainer *t, ted4_view_result *r, size_t n)
 {
     const ted4_exchange *x = t->exchange;
-    const common mine = common_of(t);
+    const common mine = common_of(t, n);
     letter out = { .now = mine }, in[TED4_MAX_RANKS];
     size_t first, end;
 
-    if (x == NULL || n == 1)
+    if (x == NULL)
         return 0;
     ted4_exchange_views(x, n, &first, &end);
     memcpy(out.result, r + first, (end - first) * sizeof *r);
