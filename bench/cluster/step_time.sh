@@ -17,7 +17,7 @@ rounds=${1:-3}
 out=$(mktemp -d) || exit 3
 trap 'rm -rf "$out"' EXIT
 
-launch="mpirun --oversubscribe --bind-to none"
+launch="mpirun --bind-to core" # one thread each
 [ "$(id -u)" != 0 ] || launch="$launch --allow-run-as-root"
 
 set -- "$@" --preset draft --capacity fixed --set batch=4 --set stage1=400 --set stage2=400 -j 1 \
