@@ -391,10 +391,11 @@ static inline void annex_b(FILE *out)
             "## B.1 The smallest file\n\n"
             "The file has one anchor, one Gaussian, a feature of one component, no motion\n"
             "and no masks, and all its weights and biases are 0. It has %zu bytes, and no\n"
-            "valid file has fewer: HEAD is shortest with one slice; 92 and 88 bytes of\n"
+            "valid file of profile Main has fewer: HEAD is shortest with one slice; 92 and 88 "
+            "bytes of\n"
             "values cannot be coded in fewer than 11 bytes each (a zlib stream has 6 bytes\n"
             "around its blocks, and a literal, a match and an end take 34 bits); three\n"
-            "substreams need a state each.\n\n"
+            "substreams need a state each. (Profile Compact: B.3.)\n\n"
             "As all outputs of the hyperprior are 0, every mu is 0, every sigma index is 64\n"
             "(sigma is one step), and every step index is 128 (q = Q0). The Gaussian has\n"
             "opacity 0, as the heads are 0 too: the smallest file shows nothing.\n",

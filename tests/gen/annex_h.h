@@ -8,9 +8,12 @@
 #include <inttypes.h>
 #include <stdio.h>
 #include "spec_head.h"
-#include "annex_b_files.h"
+#include "annex_b_compact.h"
+#include "norm/adaptive.h"
+#include "norm/coded_weights.h"
 #include "norm/coder.h"
 #include "norm/gaussian.h"
+#include "norm/octree.h"
 #include "norm/prior.h"
 #include "norm/rans.h"
 
@@ -90,16 +93,18 @@ static inline void annex_h_largest(ted4_header *h, ted4_shape *s)
 
 static inline void annex_h_file(FILE *out)
 {
-    size_t size, n_chunks = 0, at = TED4_FILE_HEADER_SIZE;
-    uint8_t *data = annex_b_encode(annex_b_smallest(), &size);
+    size_t size, n_compact, n_chunks = 0, at = TED4_FILE_HEADER_SIZE;
+    uint8_t *data = annex_b_encode(annex_b_smallest_compact(), &n_compact);
 
+    free(data);
+    data = annex_b_encode(annex_b_smallest(), &size);
     for (; at < size; n_chunks++)
         at += TED4_FRAME_HEAD_SIZE + load32(data + at + 8) + TED4_FRAME_HASH_SIZE;
     free(data);
     fprintf(out,
-            "| file bytes | %zu (B.1) | level; 2^64 - 1 | R-LVL-001 |\n| payload bytes of a chunk "
-            "| 0 | %s | 5.2 |\n",
-            size, annex_h_text(UINT32_MAX).text);
+            "| file bytes | %zu (B.1); Compact: %zu (B.3) | level; 2^64 - 1 | R-LVL-001 |\n"
+            "| payload bytes of a chunk | 0 | %s | 5.2 |\n",
+            size, n_compact, annex_h_text(UINT32_MAX).text);
     fprintf(out, "| chunks | %zu, BANK not among them | as many as fit | R-CON-003 |\n", n_chunks);
     fprintf(out, "| TILE chunks | 1 | ceil(N / %" PRId64 ") | R-CON-003 |\n",
             annex_h_find("tile_size")->low);
@@ -113,8 +118,9 @@ static inline void annex_h_scene(FILE *out)
     annex_h_largest(&h, &s);
     fprintf(out,
             "| anchors N | %" PRId64 " | %" PRIu32
-            " (6 N bytes in one payload); level | 6.1, 8 |\n",
-            annex_h_find("n_anchors")->low, UINT32_MAX / 6);
+            " (6 N bytes in one payload); Compact: %s; level | 6.1, 8 |\n",
+            annex_h_find("n_anchors")->low, UINT32_MAX / 6,
+            annex_h_text(annex_h_find("n_anchors")->high).text);
     fprintf(out, "| anchors a tile | 1 | %" PRIu32 " | 6.1 |\n", h.tile_size);
     annex_h_row(out, "offsets K", "n_offsets");
     fprintf(out, "| Gaussians G | 0 | N K | 11 |\n");
@@ -150,6 +156,11 @@ static inline void annex_h_networks(FILE *out)
     fprintf(out,
             "| shift s | 0 | %d | R-NET-003 |\n| integer weight | -32767 | 32767 | R-NET-004 |\n",
             TED4_MAX_SHIFT);
+    fprintf(out, "| exponent E of a unit, Compact | -128 | 127 | 7.6 |\n");
+    fprintf(out, "| significant bits of a coded integer, Compact | 0 | %d | R-NET-012 |\n",
+            TED4_WEIGHT_BITS);
+    fprintf(out, "| magnitude of a coded integer, Compact | 0 | %s | 9.6 |\n",
+            annex_h_text(INT32_MAX).text);
     fprintf(out, "| accumulator | -(%s) | %s | R-NET-006 |\n", annex_h_text(INT32_MAX).text,
             annex_h_text(INT32_MAX).text);
     fprintf(out, "| outputs of Tier E networks | -(%s) | %s | 7.3 |\n",
@@ -163,8 +174,15 @@ static inline void annex_h_symbols(FILE *out)
 
     annex_h_largest(&h, &s);
     fprintf(out, "| \\|X\\| | 0 | %s | 8 |\n", annex_h_text(q24(0x3c00)).text);
-    fprintf(out, "| symbols of a substream | 0 | %" PRIu32 " x %u | 9.2 |\n", h.tile_size,
+    fprintf(out, "| symbols of a substream of TILE | 0 | %" PRIu32 " x %u | 9.2 |\n", h.tile_size,
             h.feature_dim);
+    fprintf(out, "| bits g of a place, Compact | 6 | 12, or %d | R-POS-004 |\n", TED4_OCTREE_DEPTH);
+    fprintf(out,
+            "| adaptive bits of a substream, Compact | 1 | 8 g (N + 1) (POSN), 37 n (blobs) | 9.5, "
+            "9.6 |\n");
+    fprintf(out,
+            "| adaptive probability p | %d | 2^16 - %d | 9.5 |\n| bits seen | 0 | %d | 9.5 |\n",
+            TED4_ADAPTIVE_LEAST, TED4_ADAPTIVE_LEAST, TED4_ADAPTIVE_MEMORY);
     fprintf(out, "| lanes | 1 | %d | R-ENT-009 |\n", TED4_MAX_LANES);
     /* The least has one slice, scaling and offsets. */
     fprintf(out, "| substreams S | 3 | %u | R-ENT-008 |\n", s.n_substreams);
