@@ -25,6 +25,7 @@
 /* View constants that projection shares between Gaussians. */
 typedef struct {
     float u_min, u_max, v_min, v_max; /* clamp of x / z and y / z in the Jacobian */
+    float learnt, blur; /* added to both variances in training, and here, pixels^2 (annex I.4) */
 } ted4_guard;
 
 /* The bounds are the frustum's centre plus or minus TED4_RASTER_GUARD times its half-extents. The
@@ -33,9 +34,16 @@ TED4_INLINE ted4_guard ted4_guard_make(const ted4_view *v)
 {
     const float half_u = 0.5f * (float)v->width / v->fx, half_v = 0.5f * (float)v->height / v->fy;
     const float mid_u = half_u - v->cx / v->fx, mid_v = half_v - v->cy / v->fy;
+    const float fine = v->pixel > 0.0f ? 1.0f / (v->pixel * v->pixel) : 1.0f;
+    const float learnt = fine * TED4_RASTER_BLUR;
+    const float blur = fine < 1.0f ? learnt + (1.0f - fine) * TED4_RASTER_BOX : learnt;
 
-    return (ted4_guard) { mid_u - TED4_RASTER_GUARD * half_u, mid_u + TED4_RASTER_GUARD * half_u,
-                          mid_v - TED4_RASTER_GUARD * half_v, mid_v + TED4_RASTER_GUARD * half_v };
+    return (ted4_guard) { mid_u - TED4_RASTER_GUARD * half_u,
+                          mid_u + TED4_RASTER_GUARD * half_u,
+                          mid_v - TED4_RASTER_GUARD * half_v,
+                          mid_v + TED4_RASTER_GUARD * half_v,
+                          learnt,
+                          blur };
 }
 
 /* The parameters of one Gaussian per lane of a register. */
@@ -55,8 +63,8 @@ TED4_INLINE void ted4_splat_lanes_load(ted4_splat_lanes *g, const ted4_splats *s
     g->opacity = ted4_vf_load_n(s->opacity + i, n);
 }
 
-/* A projection with all intermediate values that its adjoint needs. cov2d = P P^T + blur, row r of
- * P = (j_r^T R(q)) diag(scale), j = Jacobian times view rotation. */
+/* A projection with all intermediate values that its adjoint needs. cov2d = P P^T + blur I, row r
+ * of P = (j_r^T R(q)) diag(scale), j = Jacobian times view rotation. */
 typedef struct {
     ted4_vf t[3], iz;       /* mean in camera space; 1 / t[2] */
     ted4_vf u, v;           /* clamped x / z, y / z */
@@ -66,6 +74,7 @@ typedef struct {
     ted4_vf q0[3], q1[3]; /* j_r^T R(q) */
     ted4_vf p0[3], p1[3];
     ted4_vf a, b, c, det; /* cov2d with blur */
+    ted4_vf det_learnt;   /* determinant of cov2d with the blur of training */
     ted4_vf x, y;         /* centre, pixels */
     ted4_vf a1, a2, a3;   /* as in ted4_splat2d */
 } ted4_projection;
@@ -151,11 +160,13 @@ TED4_INLINE void ted4_project_lanes(ted4_projection *p, const ted4_splat_lanes *
     const ted4_vf a0 = ted4_dot3(p->p0, p->p0), c0 = ted4_dot3(p->p1, p->p1);
     const ted4_vf m[3] = { ted4_cross(p->p0, p->p1, 0), ted4_cross(p->p0, p->p1, 1),
                            ted4_cross(p->p0, p->p1, 2) };
-    const ted4_vf blur = ted4_vf_all(TED4_RASTER_BLUR);
+    const ted4_vf blur = ted4_vf_all(guard->blur), learnt = ted4_vf_all(guard->learnt);
+    const ted4_vf det0 = ted4_dot3(m, m);
     p->a = a0 + blur;
     p->b = ted4_dot3(p->p0, p->p1);
     p->c = c0 + blur;
-    p->det = ted4_dot3(m, m) + ted4_vf_fma(blur, a0 + c0, blur * blur);
+    p->det = det0 + ted4_vf_fma(blur, a0 + c0, blur * blur);
+    p->det_learnt = det0 + ted4_vf_fma(learnt, a0 + c0, learnt * learnt);
 
     const ted4_vf ic = 1.0f / p->c;
     p->a1 = TED4_WHITEN * ted4_vf_sqrt(p->c / p->det);

@@ -106,7 +106,10 @@ static void project_group(const project_job *job, size_t i, size_t n, ted4_chunk
     ted4_splat_lanes_load(&g, job->s, i, n);
     ted4_project_lanes(&p, &g, job->v, &job->guard);
 
-    const ted4_vf level = ted4_vf_log2(opacity);
+    ted4_vf level = ted4_vf_log2(opacity);
+    if (job->guard.blur > job->guard.learnt)
+        level += 0.5f * ted4_vf_log2(p.det_learnt / p.det);
+
     const ted4_vi depth = (ted4_vi)p.t[2];
     const uint32_t visible = make_boxes(job, &p, level, opacity, n, box, skipped);
 

@@ -13,8 +13,9 @@
 #define TED4_RASTER_BLUR      0.3f /* added to both variances of the 2D covariance, pixels^2 */
 #define TED4_RASTER_ALPHA_MAX 0.99f
 #define TED4_RASTER_ALPHA_MIN (1.0f / 255.0f)
-#define TED4_RASTER_T_MIN     1e-4f /* transmittance below which a pixel is finished */
-#define TED4_RASTER_GUARD     1.3f  /* frustum factor of the Jacobian clamp */
+#define TED4_RASTER_T_MIN     1e-4f          /* transmittance below which a pixel is finished */
+#define TED4_RASTER_GUARD     1.3f           /* frustum factor of the Jacobian clamp */
+#define TED4_RASTER_BOX       (1.0f / 12.0f) /* variance of a pixel's square, pixels^2 */
 
 /* A pinhole view. The camera axes are right, down, forward; x_cam = R x + t. The pixel in column i
  * and row j has its centre at (i + 0.5, j + 0.5). */
@@ -24,6 +25,8 @@ typedef struct {
     float R[9], t[3];
     float near_z; /* Gaussians at or before this depth are culled */
     float background[3];
+    float pixel; /* width of a pixel, in pixels of the pictures of which the scene was learnt (annex
+                    I.4). 0 stands for 1, the only value for which there is an adjoint */
 } ted4_view;
 
 /* n Gaussians as a structure of arrays; borrowed. Scales are linear, rotations are unit quaternions

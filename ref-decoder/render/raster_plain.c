@@ -74,9 +74,11 @@ static int project(const ted4_splats *s, const ted4_view *v, size_t i, plain_spl
         j1[k] = v->fy / t[2] * (v->R[3 + k] - w * v->R[6 + k]);
     }
     covariance3(s, i, cov);
-    const double a = form3(j0, cov, j0) + (double)TED4_RASTER_BLUR,
-                 c = form3(j1, cov, j1) + (double)TED4_RASTER_BLUR;
-    const double b = form3(j0, cov, j1), det = a * c - b * b;
+    const double pixel = v->pixel > 0 ? v->pixel : 1, fine = 1 / (pixel * pixel);
+    const double learnt = fine * (double)TED4_RASTER_BLUR;
+    const double more = fmax(1 - fine, 0) * (double)TED4_RASTER_BOX;
+    const double a0 = form3(j0, cov, j0) + learnt, c0 = form3(j1, cov, j1) + learnt;
+    const double b = form3(j0, cov, j1), a = a0 + more, c = c0 + more, det = a * c - b * b;
 
     *g = (plain_splat) { .index = i,
                          .depth = (float)t[2],
@@ -85,7 +87,7 @@ static int project(const ted4_splats *s, const ted4_view *v, size_t i, plain_spl
                          .A = c / det,
                          .B = -b / det,
                          .C = a / det,
-                         .opacity = s->opacity[i],
+                         .opacity = s->opacity[i] * sqrt((a0 * c0 - b * b) / det),
                          .colour = { s->colour[0][i], s->colour[1][i], s->colour[2][i] } };
     return 1;
 }

@@ -96,6 +96,9 @@ static const char *get_camera(const json_t *o, ted4_listed_camera *c)
         return "needs R, a rotation of 9 numbers";
     if (!get_numbers(o, "t", 3, v->t))
         return "needs t, 3 numbers";
+    if (json_object_get(o, "pixel") != NULL &&
+        !(get_number(o, "pixel", &v->pixel) && v->pixel > 0.0f))
+        return "has a pixel that is not a number above 0";
     return get_time(o, c) ? NULL : "needs frame, a whole number, or time, from 0 to 1, or neither";
 }
 

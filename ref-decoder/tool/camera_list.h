@@ -1,9 +1,9 @@
 /* camera_list.h - reads cameras.json, the list of views that ted4dec renders.
  * The file is a list of objects. Each has width, height, fx, fy, cx and cy in pixels, with pixel
  * centres at + 0.5; R (9 numbers, row by row) and t (3 numbers), so that x_cam = R x + t with the
- * axes right, down, forward; and frame (a number), time (a number in [0, 1], or a string in the
- * form that --time accepts), or neither: a camera of all times. A transforms file is taken as well
- * (camera_transforms.h).
+ * axes right, down, forward; pixel, as in ted4_view, or nothing for 1; and frame (a number), time
+ * (a number in [0, 1], or a string in the form that --time accepts), or neither: a camera of all
+ * times. A transforms file is taken as well (camera_transforms.h).
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_CAMERA_LIST_H
 #define TED4_CAMERA_LIST_H

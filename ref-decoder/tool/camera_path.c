@@ -134,7 +134,8 @@ static void set_lens(ted4_view *v, const ted4_view *size, const ted4_view *a, co
                 ha = (float)size->height / (float)a->height,
                 hb = (float)size->height / (float)b->height;
 
-    *v = (ted4_view) { .width = size->width,
+    *v = (ted4_view) { .pixel = size->pixel,
+                       .width = size->width,
                        .height = size->height,
                        .fx = between(a->fx * wa, b->fx * wb, u),
                        .fy = between(a->fy * ha, b->fy * hb, u),

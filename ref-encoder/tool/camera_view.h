@@ -10,7 +10,7 @@
 #include "render/raster.h"
 #include "ted4.h"
 
-/* near_z and background are 0: ted4_render_query sets them. */
+/* near_z, background and pixel are 0: ted4_render_query sets the first two. */
 static inline ted4_view ted4_view_of_camera(const ted4_camera *c)
 {
     ted4_view v = { .width = c->width,

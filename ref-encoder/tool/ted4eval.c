@@ -35,6 +35,7 @@
 enum {
     OPT_SPLIT,
     OPT_DOWNSCALE,
+    OPT_TRAINED,
     OPT_MAX_FRAMES,
     OPT_ALPHA,
     OPT_HOLD_OUT,
@@ -60,6 +61,8 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
     [OPT_SPLIT] = { 0, "split", "NAME", "test (default) or train pictures" },
     [OPT_DOWNSCALE] = { 0, "downscale", "N",
                         "compare pictures shrunk N times, as ted4enc --downscale" },
+    [OPT_TRAINED] = { 0, "trained-downscale", "N",
+                      "draw a file of ted4enc --downscale N as coarser or finer pixels need it" },
     [OPT_MAX_FRAMES] = { 0, "max-frames", "N",
                          "only the first N times of SCENE, as ted4enc --max-frames" },
     [OPT_ALPHA] = { 0, "alpha", "HOW", "straight or premultiplied, as ted4enc --alpha" },
@@ -105,7 +108,7 @@ typedef struct {
     const char *hold_out[MAX_HOLD_OUT];
     size_t n_hold_out;
     int premultiplied;
-    int want_test, downscale, max_frames, threads;
+    int want_test, downscale, trained, max_frames, threads;
     int align, colours, moving, anyway, force, json, quiet, verbose;
 } settings;
 
@@ -170,6 +173,7 @@ static int set_option(settings *s, int option, const char *value)
                    ? 0
                    : ted4_arguments_bad("ted4eval", "split", value, "test or train");
     case OPT_DOWNSCALE: return set_number("downscale", value, 1, MAX_DOWNSCALE, &s->downscale);
+    case OPT_TRAINED: return set_number("trained-downscale", value, 1, MAX_DOWNSCALE, &s->trained);
     case OPT_MAX_FRAMES: return set_number("max-frames", value, 1, MAX_MAX_FRAMES, &s->max_frames);
     case OPT_ALPHA:
         s->premultiplied = strcmp(value, "premultiplied") == 0;
@@ -339,6 +343,16 @@ static int take_picture(session *s, size_t i, const uint8_t *truth, const uint8_
     return code;
 }
 
+/* The view of a camera of the scene, with pixels as large as annex I.4 wants them. */
+static ted4_view view_of(const session *s, const ted4_camera *camera)
+{
+    ted4_view view = ted4_view_of_camera(camera);
+
+    if (s->set->trained > 0)
+        view.pixel = (float)s->set->downscale / (float)s->set->trained;
+    return view;
+}
+
 /* A picture whose pose is fitted. */
 typedef struct {
     session *s;
@@ -349,7 +363,7 @@ typedef struct {
 static int draw(void *user, const ted4_camera *camera, uint8_t *rgb)
 {
     aligning *const a = user;
-    const ted4_view view = ted4_view_of_camera(camera);
+    const ted4_view view = view_of(a->s, camera);
     const uint32_t last = a->s->data.n_frames > 1 ? a->s->data.n_frames - 1 : 1;
 
     a->status = ted4_render_query(a->s->viewer, a->s->recon, &a->s->info, a->frame, last, &view,
@@ -386,7 +400,7 @@ static int align_picture(session *s, const ted4_picture *p, const uint8_t *truth
 static int draw_picture(void *user, size_t i, uint8_t *rgb)
 {
     const session *const s = user;
-    const ted4_view view = ted4_view_of_camera(&s->data.pictures[i].camera);
+    const ted4_view view = view_of(s, &s->data.pictures[i].camera);
     const uint32_t last = s->data.n_frames > 1 ? s->data.n_frames - 1 : 1;
     const ted4_error e = { ted4_render_query(s->viewer, s->recon, &s->info,
                                              s->data.pictures[i].frame, last, &view, &s->parallel,

@@ -66,6 +66,77 @@ static void test_random(void **state)
         }
 }
 
+/* Pixels coarser and finer than those of training (annex I.4). */
+static void test_other_pixels(void **state)
+{
+    static const float pixel[] = { 0.3f, 1, 1.5f, 2, 9, 64 };
+
+    (void)state;
+    for (size_t i = 0; i < sizeof pixel / sizeof *pixel; i++)
+        for (int sigma = 1; sigma <= 9; sigma += 4) {
+            ted4_view v = scene_view(64, 48);
+            scene s = scene_random(300, &v, sigma, i * 10 + (unsigned)sigma);
+
+            v.pixel = pixel[i];
+            check_against_plain(&s, &v);
+            scene_free(&s);
+        }
+}
+
+static void draw(const scene *s, const ted4_view *v, float *image)
+{
+    const ted4_splats g = scene_splats(s);
+    ted4_raster *r = ted4_raster_new();
+
+    assert_non_null(r);
+    assert_int_equal(ted4_raster_forward(r, &g, v, NULL, 0, image), 0);
+    ted4_raster_free(r);
+}
+
+/* The same camera with pixels n times as wide. */
+static ted4_view coarser(const ted4_view *v, int n, float pixel)
+{
+    ted4_view c = *v;
+
+    c.width /= n;
+    c.height /= n;
+    c.fx /= (float)n;
+    c.fy /= (float)n;
+    c.cx /= (float)n;
+    c.cy /= (float)n;
+    c.pixel = pixel;
+    return c;
+}
+
+/* A coarse picture is the mean of the fine one's pixels, much more so than without the correction.
+ */
+static void test_coarser(void **state)
+{
+    enum { N = 4, WIDTH = 128, HEIGHT = 96, W = WIDTH / N, H = HEIGHT / N };
+    static float fine[3 * WIDTH * HEIGHT], mean[3 * W * H], coarse[3 * W * H], without[3 * W * H];
+    static double want[3 * W * H];
+    const ted4_view v = scene_view(WIDTH, HEIGHT), c = coarser(&v, N, N), u = coarser(&v, N, 0);
+    scene s = scene_random(2000, &v, 0.5, 3);
+    double worst;
+
+    (void)state;
+    draw(&s, &v, fine);
+    draw(&s, &c, coarse);
+    draw(&s, &u, without);
+    for (size_t i = 0; i < 3 * (size_t)HEIGHT * WIDTH; i++)
+        mean[i / (WIDTH * HEIGHT) * W * H + i / WIDTH % HEIGHT / N * W + i % WIDTH / N] += fine[i] /
+                                                                                           (N * N);
+    for (size_t i = 0; i < 3 * (size_t)W * H; i++)
+        want[i] = (double)mean[i];
+
+    const double with = psnr(coarse, want, 3 * (size_t)W * H, &worst);
+    const double bare = psnr(without, want, 3 * (size_t)W * H, &worst);
+
+    if (with < 27 || with < bare + 6)
+        fail_msg("%.2f dB, without correction %.2f dB", with, bare);
+    scene_free(&s);
+}
+
 static void test_nothing(void **state)
 {
     const ted4_view v = scene_view(17, 9);
@@ -229,7 +300,8 @@ static void test_reuse(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_random),     cmocka_unit_test(test_nothing),
+        cmocka_unit_test(test_random),     cmocka_unit_test(test_other_pixels),
+        cmocka_unit_test(test_coarser),    cmocka_unit_test(test_nothing),
         cmocka_unit_test(test_awkward),    cmocka_unit_test(test_needle),
         cmocka_unit_test(test_not_finite), cmocka_unit_test(test_ties),
         cmocka_unit_test(test_threads),    cmocka_unit_test(test_reuse),

@@ -222,6 +222,31 @@ static uint8_t *drawn(int i)
     return rgb;
 }
 
+/* A member of the first camera says how large its pixels are (annex I.4). cameras: three, already
+ * drawn as view_N.png. */
+static void check_pixel(const json_t *cameras)
+{
+    json_t *const list = json_deep_copy(cameras), *const first = json_array_get(list, 0);
+
+    json_object_set_new(first, "pixel", json_real(1));
+    save(json_incref(list), "pixel.json");
+    assert_int_equal(run("ted4dec v1.ted4 --render pix_%%d.png --camera pixel.json && "
+                         "cmp pix_0.png view_0.png"),
+                     0);
+    json_object_set_new(first, "pixel", json_real(2));
+    save(json_incref(list), "pixel.json");
+    assert_int_equal(run("ted4dec v1.ted4 --render pix_%%d.png -f --camera pixel.json && "
+                         "cmp pix_1.png view_1.png"),
+                     0);
+    assert_int_equal(run("cmp -s pix_0.png view_0.png"), 1);
+    json_object_set_new(first, "pixel", json_real(0));
+    save(json_incref(list), "pixel.json");
+    assert_int_equal(run("ted4dec v1.ted4 --render pix_%%d.png -f --camera pixel.json 2>&1 | "
+                         "grep -q 'camera 0 has a pixel that is not a number above 0'"),
+                     0);
+    json_decref(list);
+}
+
 static void test_render(void **state)
 {
     json_t *const list = json_array();
@@ -242,8 +267,10 @@ static void test_render(void **state)
                                         (double)v.fy, "cx", (double)v.cx, "cy", (double)v.cy, "R",
                                         numbers(v.R, 9), "t", numbers(v.t, 3), "time", time));
     }
-    save(list, "cameras.json");
+    save(json_incref(list), "cameras.json");
     assert_int_equal(run("ted4dec v1.ted4 --render view_%%d.png --camera cameras.json"), 0);
+    check_pixel(list);
+    json_decref(list);
     assert_int_equal(run("ted4dec v1.ted4 --render view_%%d.png --camera cameras.json"), 3);
     for (int i = 0; i < VIEWS; i++) {
         uint8_t *const want = drawn(i);
@@ -490,13 +517,33 @@ static void test_eval(void **state)
     assert_int_equal(run("ted4eval v1.ted4 scene --split both"), 3);
 }
 
+/* Smaller pictures are closer to what the file shows if its Gaussians are widened as they were in
+ * training (annex I.4). */
+static void test_trained_downscale(void **state)
+{
+    double psnr, without;
+
+    (void)state;
+    need_programs();
+    assert_int_equal(run("ted4eval v1.ted4 scene --anyway --json"), 0);
+    psnr = result("psnr");
+    assert_int_equal(run("ted4eval v1.ted4 scene --anyway --json --trained-downscale 1"), 0);
+    assert_true(result("psnr") == psnr);
+    assert_int_equal(run("ted4eval v1.ted4 scene --anyway --json --downscale 2"), 0);
+    without = result("psnr");
+    assert_int_equal(
+        run("ted4eval v1.ted4 scene --anyway --json --downscale 2 --trained-downscale 1"), 0);
+    assert_true(result("psnr") > without + 3.0);
+    assert_int_equal(run("ted4eval v1.ted4 scene --trained-downscale 0"), 3);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_contract_bound), cmocka_unit_test(test_hash),
         cmocka_unit_test(test_frames),         cmocka_unit_test(test_fitted_colours),
         cmocka_unit_test(test_render),         cmocka_unit_test(test_cameras),
-        cmocka_unit_test(test_eval),
+        cmocka_unit_test(test_eval),           cmocka_unit_test(test_trained_downscale),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }

@@ -84,6 +84,7 @@ void ted4_normalise_view(const ted4_header *h, const ted4_camera *c, ted4_view *
     v->cx = (float)c->cx;
     v->cy = (float)c->cy;
     v->near_z = TED4_NEAR;
+    v->pixel = 1.0f;
     for (int j = 0; j < 3; j++)
         v->background[j] = (float)h->background[j] / 255.0f;
 
