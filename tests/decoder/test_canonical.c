@@ -1,7 +1,7 @@
-/* test_canonical.c - R-BIT-002 over every valid vector of the suite: a writer that is based on
- * annex J alone reproduces the file from its elements (T0), including ancillary chunks and minor
- * version; and the encoder, which gets only a decoded scene, writes the file without these, bit for
- * bit.
+/* test_canonical.c - R-BIT-002 over every valid vector of the suite, of either profile: a writer
+ * that is based on annex J alone reproduces the file from its elements (T0), including ancillary
+ * chunks and minor version; and the encoder, which gets only a decoded scene, writes the file
+ * without these, bit for bit.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,7 +14,14 @@
 #include "vector_files.h"
 #include "write/encode.h"
 
-enum { MAX_FILE = MAX_VECTOR, MAX_T0 = 8 * MAX_FILE, MAX_ID = 256, FEW_FILES = 800, MINOR_AT = 9 };
+enum {
+    MAX_FILE = MAX_VECTOR,
+    MAX_T0 = 8 * MAX_FILE,
+    MAX_ID = 256,
+    FEW_FILES = 800,
+    MINOR_AT = 9,
+    PROFILE_AT = 10
+};
 
 /* Bytes of an element that is a number, by annex J.2; 0 if the element consists of bytes, or does
  * not exist. */
@@ -113,7 +120,7 @@ static void write_scene(const ted4_scene *s)
     free(out);
 }
 
-static int n_valid, n_ancillary, n_minor;
+static int n_valid, n_compact, n_ancillary, n_minor;
 
 static void write_back(const uint8_t *data, size_t size, const char *path)
 {
@@ -132,6 +139,7 @@ static void write_back(const uint8_t *data, size_t size, const char *path)
     write_scene(s);
     ted4_scene_free(s);
     n_valid++;
+    n_compact += x.file[PROFILE_AT] == TED4_PROFILE_COMPACT;
     n_minor += x.file[MINOR_AT] != 0;
     n_ancillary += ted4_plain_file(x.back, x.file, x.size) < x.size;
 }
@@ -141,6 +149,7 @@ static void valid_vectors(void **state)
     (void)state;
     each_vector("! -path '*/invalid/*'", write_back);
     assert_true(n_valid > FEW_FILES);
+    assert_true(n_compact > 200);
     assert_true(n_ancillary > 10);
     assert_true(n_minor > 0);
 }
