@@ -25,9 +25,10 @@ def write(runs, _charts, _results, _pages):
     page.prose("""`make bd-rate` writes this page from [bd_rate.csv](bd_rate.csv); the runs are
         those of bd_rate.txt, in small trainings. "before" is the encoder without profile Compact,
         at its own defaults; "compact" is `--profile compact`, whose stage 2 is three times as long;
-        "once" and "twice" are the same with as many steps as "before", and with twice as many. PSNR
-        is that of held-out pictures, drawn from the decoded file. † marks rows that other sources
-        made.""")
+        "masks" is the same with `mask_weight=1`. PSNR is that of held-out pictures, drawn from the
+        decoded file. Decoding is the best of five times on one thread, on a machine that others
+        used. † marks rows that other sources made. What limits the profile, and what else was
+        tried: [compact.md](compact.md).""")
     page.prose(f"{sum(run.has() for run in runs.all)} of {len(runs.all)} rows are there"
                + made_with(runs.all) + ".")
     page.prose(bars.summary())

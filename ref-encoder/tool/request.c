@@ -238,9 +238,7 @@ static int take_bounds(ted4_request *r, const char *value)
     return TED4_REQUEST_GO;
 }
 
-/* What --profile compact sets besides the profile: masks weigh all that a Gaussian costs, and stage
- * 2 is longer. bench/compact.md has the measurements. */
-#define COMPACT_MASK_WEIGHT 1.0
+/* By what --profile compact makes stage 2 longer: bench/compact.md has the measurements. */
 enum { COMPACT_STAGE2 = 3 };
 
 static int take_profile(const char *value, ted4_train_options *o)
@@ -250,10 +248,8 @@ static int take_profile(const char *value, ted4_train_options *o)
     if (strcmp(value, "compact") != 0 && strcmp(value, "main") != 0)
         return bad_value(OPT_PROFILE, value, "main or compact");
     o->profile = strcmp(value, "compact") == 0 ? TED4_PROFILE_COMPACT : TED4_PROFILE_MAIN;
-    if (o->profile == TED4_PROFILE_COMPACT) {
-        o->mask_weight = COMPACT_MASK_WEIGHT;
+    if (o->profile == TED4_PROFILE_COMPACT)
         o->stage2 *= COMPACT_STAGE2;
-    }
     return TED4_REQUEST_GO;
 }
 

@@ -22,7 +22,7 @@ static ted4_train_options options(const char *profile)
     ball_set(&o, "integer_share=0.2");
     ball_set(&o, "stage1=60");
     ball_set(&o, "stage2=2800");
-    ball_set(&o, "lambda=0.01");
+    ball_set(&o, "lambda=0.0003");
     return o;
 }
 

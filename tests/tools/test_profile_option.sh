@@ -24,8 +24,8 @@ train() {
 same()  { if cmp -s "$out/$2.ted4" "$out/$3.ted4"; then ok "$1"; else fail "$1" "$2, $3"; fi; }
 
 train compact --profile compact --iterations 60,40
-train options --set profile=1 --set mask_weight=1 --set stage2=40
-train back    --profile compact --iterations 60,40 --set profile=0 --set mask_weight=0.4
+train options --set profile=1 --set stage2=40
+train back    --profile compact --iterations 60,40 --set profile=0
 train main    --profile main --iterations 60,40
 train plain   --set stage2=40
 same  options_of_compact compact options
