@@ -7,7 +7,6 @@ from .words import Page, fixed, signed
 
 LEAST_GAIN = -25       # percent, BD-rate
 MOST_BITS = 20         # of a position, an anchor
-MOST_TIME = 1.5        # times the decoding time of profile Main
 RATE_ERROR = 0.01      # estimate against the file
 COMMAND = "`bench/bd_rate.sh`"
 
@@ -18,7 +17,6 @@ def write(runs, _charts, _results, _pages):
     changes = {scene: change_of(runs, scene, "compact") for scene in runs.scenes}
     rate_bar(runs, bars, changes)
     position_bar(runs, bars)
-    time_bar(runs, bars)
     estimate_bar(runs, bars)
     page = Page()
     page.heading("Profile Compact: rate and quality", 1)
@@ -26,9 +24,9 @@ def write(runs, _charts, _results, _pages):
         those of bd_rate.txt, in small trainings. "before" is the encoder without profile Compact,
         at its own defaults; "compact" is `--profile compact`, whose stage 2 is three times as long;
         "masks" is the same with `mask_weight=1`. PSNR is that of held-out pictures, drawn from the
-        decoded file. Decoding is the best of five times on one thread, on a machine that others
-        used. † marks rows that other sources made. What limits the profile, and what else was
-        tried: [compact.md](compact.md).""")
+        decoded file. Times of decoding are no comparison: other work ran beside them. † marks rows
+        that other sources made. What limits the profile, what else was tried, and times of
+        decoding side by side: [compact.md](compact.md).""")
     page.prose(f"{sum(run.has() for run in runs.all)} of {len(runs.all)} rows are there"
                + made_with(runs.all) + ".")
     page.prose(bars.summary())
@@ -74,26 +72,6 @@ def position_bar(runs, bars):
              "" if most is None else f"{fixed(min(known.values()), 1)} to "
              f"{fixed(known[most], 1)} bits, most: {most}",
              verdict(any(bits > MOST_BITS for bits in known.values()), len(known), wanted), COMMAND)
-
-
-def largest(runs, variant):
-    """The run with the largest file of a variant."""
-    return max((run for run in runs.all if run.variant == variant and run.has()),
-               key=lambda run: run.count("bytes"), default=None)
-
-
-def time_bar(runs, bars):
-    """Of the pair of runs whose file of profile Main is the largest."""
-    before = largest(runs, "before")
-    compact = before and runs.find(before.tag.replace("-before-", "-compact-"))
-    times = None
-    if compact and compact.has():
-        times = compact.count("decode_ms") / before.count("decode_ms")
-    bars.add(4, "decoding the largest file, one core", f"at most {MOST_TIME} times as long",
-             "" if times is None else f"{before.scene} at λ {before.weight}: "
-             f"{fixed(compact.number('decode_ms'), 1)} ms for "
-             f"{fixed(before.number('decode_ms'), 1)} ms, {fixed(times, 2)} times",
-             None if times is None else times <= MOST_TIME, COMMAND)
 
 
 def estimate_error(run):
