@@ -12,7 +12,6 @@
 #include "ball_missing.h"
 #include "odd_threads.h"
 #include "train/densify/cell_view.h"
-#include "train/densify/mv_seed.h"
 #include "train/densify/sv_seed.h"
 #include "train/state/picture.h"
 #include "train/step/events.h"
@@ -279,31 +278,6 @@ static void test_not_applied(void **state)
     ted4_trainer_finish(&t);
 }
 
-/* With all four cameras, multi-view seeding acts; of two of its anchors in one voxel, not both live
- * at the other's time. */
-static void test_voxels(void **state)
-{
-    const ted4_train_options o = options();
-    ted4_places list = { 0 };
-    ted4_trainer t;
-
-    (void)state;
-    take_turns(1, 4);
-    ball_begin(&t, &o, &balls, NULL);
-    ball_train(&t, STEPS);
-    assert_true(ted4_mv_seed_applies(&t));
-    for (uint32_t f = 0; f < FRAMES; f++)
-        assert_int_equal(ted4_mv_seed_search(&t, f, &list), 0);
-
-    const size_t before = t.anchors.n;
-
-    assert_int_equal(ted4_mv_seed(&t), 0);
-    assert_true(t.anchors.n > before + 20);
-    ball_check_apart(&t, &list);
-    free(list.item);
-    ted4_trainer_finish(&t);
-}
-
 /* ---- determinism ---- */
 
 static void test_threads(void **state)
@@ -372,11 +346,11 @@ static void test_cells(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_found),   cmocka_unit_test(test_other_rigs),
-        cmocka_unit_test(test_budget),  cmocka_unit_test(test_schedule),
-        cmocka_unit_test(test_sizes),   cmocka_unit_test(test_spread),
-        cmocka_unit_test(test_voxels),  cmocka_unit_test(test_not_applied),
-        cmocka_unit_test(test_threads), cmocka_unit_test(test_cells),
+        cmocka_unit_test(test_found),       cmocka_unit_test(test_other_rigs),
+        cmocka_unit_test(test_budget),      cmocka_unit_test(test_schedule),
+        cmocka_unit_test(test_sizes),       cmocka_unit_test(test_spread),
+        cmocka_unit_test(test_not_applied), cmocka_unit_test(test_threads),
+        cmocka_unit_test(test_cells),
     };
 
     return cmocka_run_group_tests_name("sv_seed", tests, set_up_without_blue, tear_down);

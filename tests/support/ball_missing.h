@@ -9,7 +9,6 @@
 #include "test.h"
 #include "train/densify/plane_sweep.h"
 #include "train/densify/short_lived.h"
-#include "train/math/voxel_set.h"
 
 enum { BLUE = 2 };
 
@@ -100,26 +99,6 @@ static inline int ball_lives_at(const ted4_trainer *t, size_t i, uint32_t frame)
                                             t->layout.first[TED4_TAU] + c);
     return tau[0] * frames + 0.25 / 0.35 * exp2(tau[1]) * frames <= frame + 1e-3 &&
            frame - 1e-3 <= tau[2] * frames - 0.25 / 0.35 * exp2(tau[3]) * frames;
-}
-
-/* Asserts that of two anchors in one voxel not both were planted if each lives at the other's
- * frame. */
-static inline void ball_check_apart(const ted4_trainer *t, const ted4_places *list)
-{
-    for (size_t i = 0; i < t->anchors.n; i++)
-        for (size_t k = 0; k < i; k++) {
-            const ted4_place *a = ball_place_of(t, i, list), *b = ball_place_of(t, k, list);
-
-            if (a == NULL || b == NULL)
-                continue;
-
-            const double voxel = exp2(ceil(log2((double)a->size)));
-
-            if (voxel != exp2(ceil(log2((double)b->size))) ||
-                ted4_voxel_key(a->point, voxel) != ted4_voxel_key(b->point, voxel))
-                continue;
-            assert_false(ball_lives_at(t, i, b->frame) && ball_lives_at(t, k, a->frame));
-        }
 }
 
 #endif

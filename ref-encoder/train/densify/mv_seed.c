@@ -21,40 +21,101 @@ int ted4_mv_seed_applies(const ted4_trainer *t)
            ted4_most_cameras(t->data) >= TED4_CAMERAS_NEEDED;
 }
 
-/* Marks the voxel of a place in the frames of its span. Returns 0 if it was already marked in its
- * own frame, else 1. */
-static int mark(ted4_voxel_set *taken, const ted4_place *p, const ted4_span *span)
+/* A place that may become an anchor, and when it exists. */
+typedef struct {
+    const ted4_place *place; /* borrowed */
+    ted4_span span;
+} candidate;
+
+/* Fills c, [list->n], with the places that come and go, in the order of the list; returns their
+ * number. */
+static size_t list_candidates(const ted4_places *list, const ted4_photo_votes *s, candidate *c)
 {
-    const double voxel = ted4_math_exp2(ceil(ted4_math_log2((double)p->size)));
+    size_t n = 0;
+
+    for (size_t i = 0; i < list->n; i++) {
+        c[n].place = &list->item[i];
+        n += ted4_photo_votes_span(s, i, list->item[i].frame, &c[n].span) != 0;
+    }
+    return n;
+}
+
+/* Marks the voxel of a candidate, wide times as large as its place needs, in the frames of its
+ * span. Returns 0 if it was already marked in the candidate's own frame, else 1. */
+static int mark(ted4_voxel_set *taken, const candidate *c, double wide)
+{
+    const ted4_place *p = c->place;
+    const double voxel = wide * ted4_math_exp2(ceil(ted4_math_log2((double)p->size)));
     const uint64_t key = ted4_voxel_key(p->point, voxel);
 
-    if (!ted4_voxel_set_add(taken, ted4_mix(key + p->frame) | 1))
+    if (!ted4_voxel_set_add(taken, ted4_random(key, p->frame) | 1))
         return 0;
-    for (uint32_t f = span->from; f <= span->to; f++)
+    for (uint32_t f = c->span.from; f <= c->span.to; f++)
         if (f != p->frame)
-            ted4_voxel_set_add(taken, ted4_mix(key + f) | 1);
+            ted4_voxel_set_add(taken, ted4_random(key, f) | 1);
     return 1;
+}
+
+/* Chooses the candidates that become anchors if anchors are wide times as large as their places:
+ * the first of each voxel that is still free, at most most. chosen: [most] their indices, in
+ * increasing order. Returns their number. */
+static size_t choose(const candidate *c, size_t n, size_t most, double wide, ted4_voxel_set *taken,
+                     size_t *chosen)
+{
+    size_t found = 0;
+
+    ted4_voxel_set_clear(taken);
+    for (size_t i = 0; i < n && found < most; i++)
+        if (mark(taken, &c[i], wide))
+            chosen[found++] = i;
+    return found;
+}
+
+/* The largest number of doublings of anchors' widths: 32 times as wide as the places are apart. */
+enum { MOST_DOUBLINGS = 5 };
+
+/* Chooses like choose, at the largest width that still uses all of a budget of most anchors, so
+ * that the budget of a long sequence reaches beyond the few most reliable places. *wide: that
+ * width. */
+static size_t choose_wide(const candidate *c, size_t n, size_t most, ted4_voxel_set *taken,
+                          size_t *chosen, double *wide)
+{
+    int doublings = 0;
+
+    while (most < n && doublings < MOST_DOUBLINGS &&
+           choose(c, n, most, 1 << (doublings + 1), taken, chosen) == most)
+        doublings++;
+    *wide = 1 << doublings;
+    return choose(c, n, most, *wide, taken, chosen);
 }
 
 static int plant(ted4_trainer *t, const ted4_places *list, const ted4_photo_votes *s,
                  const ted4_seed_parents *l)
 {
-    const size_t n_old = t->anchors.n, most = (size_t)t->opt.max_anchors;
-    const size_t allowance = n_old < most ? most - n_old : 0;
-    ted4_voxel_set taken;
+    const size_t n_old = t->anchors.n, max_anchors = (size_t)t->opt.max_anchors;
+    const size_t allowance = n_old < max_anchors ? max_anchors - n_old : 0;
+    const size_t most = allowance < list->n ? allowance : list->n;
+    candidate *c = malloc((list->n + 1) * sizeof *c);
+    size_t *chosen = malloc((most + 1) * sizeof *chosen), n;
+    ted4_voxel_set taken = { 0 };
+    double wide;
     int bad = 0;
 
-    if (ted4_voxel_set_init(&taken,
-                            (list->n < allowance ? list->n : allowance) * t->data->n_frames) != 0)
+    if (c == NULL || chosen == NULL || ted4_voxel_set_init(&taken, most * t->data->n_frames) != 0) {
+        free(chosen);
+        free(c);
         return ted4_trainer_fail(t, "no memory for new anchors");
-    for (size_t i = 0; !bad && i < list->n && t->anchors.n < most; i++) {
-        const ted4_place *p = &list->item[i];
-        ted4_span span;
+    }
+    n = choose_wide(c, list_candidates(list, s, c), most, &taken, chosen, &wide);
+    for (size_t i = 0; !bad && i < n; i++) {
+        ted4_place p = *c[chosen[i]].place;
 
-        if (ted4_photo_votes_span(s, i, p->frame, &span) && mark(&taken, p, &span))
-            bad = ted4_seed_add(t, l, p, &span) != 0;
+        p.size *= (float)wide;
+        bad = ted4_seed_add(t, l, &p, &c[chosen[i]].span) != 0;
     }
     ted4_voxel_set_finish(&taken);
+    free(chosen);
+    free(c);
     return bad ? -1 : 0;
 }
 

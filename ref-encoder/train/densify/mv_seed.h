@@ -17,8 +17,10 @@
 int ted4_mv_seed_applies(const ted4_trainer *t);
 
 /* Searches all frames and adds anchors, most reliable places first, until max_anchors is reached.
- * Each new anchor is active in the frames in which its colour is seen at its place, and takes the
- * features of the anchor with the nearest colour. Returns 0, or -1 with t->message filled. */
+ * If that leaves too few for all places, new anchors are wider than places are apart: by the
+ * largest power of two, up to 32, at which all of them are still used. Each new anchor is active in
+ * the frames in which its colour is seen at its place, and takes the features of the anchor with
+ * the nearest colour. Returns 0, or -1 with t->message filled. */
 int ted4_mv_seed(ted4_trainer *t);
 
 #endif
