@@ -30,7 +30,8 @@ for id in vector $sample; do
 done
 
 mkdir "$out/dump"
-sed -n 's/^ "queries":\(.*\),$/\1/p' $stream.json >"$out/q.json"
+python3 -c 'import json, sys; json.dump(json.load(sys.stdin)["queries"], sys.stdout)' \
+    <$stream.json >"$out/q.json"
 "$TED4_BUILD/ted4dec" --ted4-run $stream.ted4 --tiers T5 --queries "$out/q.json" \
     --dump "$out/dump" >/dev/null || fail dump "status $?"
 judge ours 0 '{"class":"T","queries":["kept","kept","kept","kept"]}'
