@@ -101,8 +101,7 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
     [OPT_LOG] = { 0, "log", "FILE", "JSON lines of progress; with --resume it goes on" },
     [OPT_PROFILE] = { 0, "profile", "NAME",
                       "main (default), which every decoder reads, or compact, which is smaller: "
-                      "its "
-                      "stage 2 is three times as long, see --set profile" },
+                      "its stage 2 is three times as long, see --set profile" },
     [OPT_TRANSCODE] = { 0, "transcode", "FILE",
                         "no training: write this file again, in the profile, without loss" },
     [OPT_TITLE] = { 0, "title", "TEXT", "title of the scene, for players and ted4info" },
