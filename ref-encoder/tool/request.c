@@ -100,8 +100,8 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
     [OPT_STAGE1] = { 0, "stage1", "FILE", "begin with this end of stage 1, or make the file" },
     [OPT_LOG] = { 0, "log", "FILE", "JSON lines of progress; with --resume it goes on" },
     [OPT_PROFILE] = { 0, "profile", "NAME",
-                      "main (default), which every decoder reads, or compact, which is smaller: "
-                      "its stage 2 is three times as long, see --set profile" },
+                      "compact (default), or main, which is larger and which decoders of "
+                      "version 1.0 read, too" },
     [OPT_TRANSCODE] = { 0, "transcode", "FILE",
                         "no training: write this file again, in the profile, without loss" },
     [OPT_TITLE] = { 0, "title", "TEXT", "title of the scene, for players and ted4info" },
@@ -237,9 +237,6 @@ static int take_bounds(ted4_request *r, const char *value)
     return TED4_REQUEST_GO;
 }
 
-/* By what --profile compact makes stage 2 longer: bench/compact.md has the measurements. */
-enum { COMPACT_STAGE2 = 3 };
-
 static int take_profile(const char *value, ted4_train_options *o)
 {
     if (value == NULL)
@@ -247,8 +244,6 @@ static int take_profile(const char *value, ted4_train_options *o)
     if (strcmp(value, "compact") != 0 && strcmp(value, "main") != 0)
         return bad_value(OPT_PROFILE, value, "main or compact");
     o->profile = strcmp(value, "compact") == 0 ? TED4_PROFILE_COMPACT : TED4_PROFILE_MAIN;
-    if (o->profile == TED4_PROFILE_COMPACT)
-        o->stage2 *= COMPACT_STAGE2;
     return TED4_REQUEST_GO;
 }
 

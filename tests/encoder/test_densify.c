@@ -234,6 +234,7 @@ static void test_max_anchors(void **state)
         size_t n = 0;
 
         cloud_make(&cloud, 5);
+        cloud.options.init_anchors = CLOUD_POINTS;
         cloud.options.max_anchors = CLOUD_POINTS + (full ? -20 : CAPACITY);
         cloud_begin(&cloud, &t);
         give_moments(&t);

@@ -244,6 +244,30 @@ static void test_bound(void **state)
     }
 }
 
+/* By default half of max_anchors, or all of it where pictures are taken from fewer than three
+ * places, whatever their times. */
+static void test_default_bound(void **state)
+{
+    ted4_picture views[3];
+    ted4_trainer t;
+
+    (void)state;
+    for (int places = 1; places <= 3; places++) {
+        cloud_make(&cloud, 3);
+        cloud.options.max_anchors = 101;
+        for (uint32_t i = 0; i < 3; i++) {
+            views[i] = cloud.picture;
+            views[i].frame = i;
+            views[i].camera.t[1] += (double)(i % (uint32_t)places);
+        }
+        cloud.data.pictures = views;
+        cloud.data.n_pictures = 3;
+        cloud_begin(&cloud, &t);
+        assert_in_range(t.anchors.n, places < 3 ? 52 : 26, places < 3 ? 101 : 51);
+        ted4_trainer_finish(&t);
+    }
+}
+
 /* One point is enough; no point is refused with a message. */
 static void test_few_points(void **state)
 {
@@ -446,17 +470,12 @@ static void test_awake(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_normalise_make),
-        cmocka_unit_test(test_normalise_view),
-        cmocka_unit_test(test_lattice),
-        cmocka_unit_test(test_voxels),
-        cmocka_unit_test(test_finest),
-        cmocka_unit_test(test_bound),
-        cmocka_unit_test(test_few_points),
-        cmocka_unit_test(test_networks),
-        cmocka_unit_test(test_awake),
-        cmocka_unit_test(test_bank),
-        cmocka_unit_test(test_phi),
+        cmocka_unit_test(test_normalise_make), cmocka_unit_test(test_normalise_view),
+        cmocka_unit_test(test_lattice),        cmocka_unit_test(test_voxels),
+        cmocka_unit_test(test_finest),         cmocka_unit_test(test_bound),
+        cmocka_unit_test(test_default_bound),  cmocka_unit_test(test_few_points),
+        cmocka_unit_test(test_networks),       cmocka_unit_test(test_awake),
+        cmocka_unit_test(test_bank),           cmocka_unit_test(test_phi),
         cmocka_unit_test(test_prior),
     };
 

@@ -447,7 +447,7 @@ static void test_off(void **state)
  * move by the focal length times the angle, and a little more beside the centre. */
 static void test_limit(void **state)
 {
-    static const float angle[] = { 0.005f, 0.01f };
+    static const float angle[] = { 0.01f, 0.015f };
     const ted4_train_options o = options();
 
     (void)state;

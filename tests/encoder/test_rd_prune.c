@@ -18,7 +18,7 @@
 
 enum { STAGE1 = 900, STAGE2 = 300, INTEGER = STAGE1 + 240, PRICES = 6 };
 
-/* Bits of an anchor's position and of its motion flag. */
+/* Bits of an anchor's position in profile Main and of its motion flag. */
 #define ANCHOR_BITS 49.0
 
 static ted4_train_options options;
@@ -29,6 +29,7 @@ static int set_up_all(void **state)
     ball_set(&options, "stage1=900");
     ball_set(&options, "stage2=300");
     ball_set(&options, "capacity_share=0.25");
+    ball_set(&options, "profile=0");
     return set_up(state);
 }
 

@@ -11,7 +11,6 @@
 #include "train/math/random.h"
 #include "train/state/trainer.h"
 #include "train/step/trainer_init.h"
-#include "train/step/trainer_init.h"
 
 enum { CLOUD_SIDE = 6, CLOUD_POINTS = CLOUD_SIDE * CLOUD_SIDE * CLOUD_SIDE };
 

@@ -52,6 +52,18 @@ rows 0.7 18 1004 | grep -v '^turn-compact-[34]' >"$out/bd_rate.csv" && states &&
 check incomplete "$page" 'Bars: 0 met, 0 missed, 3 not run yet.' \
     '| still -30.0 % | not run yet |' \
     '14 of 16 rows are there' '| turn-compact-4 | not run yet |'
+# Another seed on one scene: the mean over seeds counts, -20 % of -30 and -10.
+cp "$out/table.txt" "$out/one_seed.txt"
+cat >>"$out/table.txt" <<END
+run seeds before_seed2  still 1,2,3,4 - --set stage2=2000 --seed 2
+run seeds compact_seed2 still 1,2,3,4 - --set profile=1 --seed 2
+END
+{ rows 0.7 18 1004; rows 0.9 18 1004 | grep '^still' | sed 's/-[1-4],/_seed2&/'; } \
+    >"$out/bd_rate.csv" && states && make_page || fail page "not made"
+check seeds "$page" 'Bars: 2 met, 1 missed, 0 not run yet.' \
+    'still -20.0 % (2 seeds: -30.0, -10.0), turn -30.0 %' \
+    '| still | compact_seed2 | -10.0 % (cubic) | ' '24 of 24 rows are there'
+cp "$out/one_seed.txt" "$out/table.txt"
 rm "$out/bd_rate.csv" && : >"$out/states" && make_page || fail page "not made"
 check empty "$page" 'Bars: 0 met, 0 missed, 3 not run yet.' '| turn | compact | - | - | 0 of 8 |'
 exit $bad

@@ -25,7 +25,7 @@ logged() {
 }
 
 for scene in shaken turn; do
-    "$TED4_BUILD/ted4scene" $scene -o "$out/$scene" --size 48x32 --frames 4 --cameras 6 \
+    "$TED4_BUILD/ted4scene" $scene -o "$out/$scene" --size 96x64 --frames 4 --cameras 6 \
         --test-cameras 1 -j 1 2>/dev/null
 done
 encode shaken wrong --checkpoint "$out/wrong.checkpoint"

@@ -10,6 +10,7 @@
 #include "seed_anchor.h"
 #include "train/model/normalise.h"
 #include "train/state/arrangement.h"
+#include "viewpoints.h"
 
 /* So many pictures before and after a picture tell at which depth something is. */
 enum { BESIDE = 3, RING = 2 * BESIDE + 1 };
@@ -89,50 +90,12 @@ static int list_pictures(film *f, const ted4_dataset *d)
     return 0;
 }
 
-/* Viewpoints are distinct if they are at least APART radians apart, as seen from the middle of the
- * scene. One that is nearer to the middle than NEAREST is treated as if it were at that distance.
- */
-#define APART   0.05f
-#define NEAREST 0.25f
-
-static int are_apart(const float a[3], const float b[3])
-{
-    float square = 0, other = 0;
-    const float far = NEAREST * NEAREST;
-
-    for (int k = 0; k < 3; k++) {
-        square += (a[k] - b[k]) * (a[k] - b[k]);
-        other += a[k] * a[k];
-    }
-    return square >= APART * APART * fmaxf(far, other);
-}
-
-/* Returns whether the training pictures are taken from enough distinct viewpoints to tell a depth:
- * with fewer, chance matches decide. Poses are those of the scene, which never change. */
-static int has_viewpoints(const ted4_trainer *t)
-{
-    float found[TED4_CAMERAS_NEEDED][3], centre[3];
-    int n = 0;
-
-    for (size_t i = 0; i < t->data->n_pictures && n < TED4_CAMERAS_NEEDED; i++) {
-        ted4_view v;
-        int is_new = !t->data->pictures[i].is_test;
-
-        ted4_normalise_view(&t->layout.head, &t->data->pictures[i].camera, &v, centre);
-        for (int k = 0; k < n; k++)
-            is_new &= are_apart(found[k], centre);
-        if (is_new)
-            memcpy(found[n++], centre, sizeof centre);
-    }
-    return n == TED4_CAMERAS_NEEDED;
-}
-
 int ted4_sv_seed_applies(const ted4_trainer *t)
 {
     const uint32_t most = ted4_most_cameras(t->data);
 
     return t->layout.first[TED4_TAU] >= 0 && t->data->n_frames >= 2 && most > 0 &&
-           most < TED4_CAMERAS_NEEDED && has_viewpoints(t);
+           most < TED4_CAMERAS_NEEDED && ted4_has_viewpoints(t);
 }
 
 /* Opens the pictures up to BESIDE after picture i. Returns 0, or -1 with t->message filled. */

@@ -131,8 +131,8 @@ static void fill_anchor(fill_job *f, size_t i)
     *ted4_anchor_value(f->a, TED4_ROW_VALUE, i, l->temporal_logit) = 1.0f;
 }
 
-int ted4_init_anchors(ted4_anchors *a, const ted4_layout *l, const ted4_dataset *d,
-                      const ted4_train_options *o, double *voxel)
+int ted4_init_anchors(ted4_anchors *a, const ted4_layout *l, const ted4_dataset *d, size_t most,
+                      double cell, double *voxel)
 {
     float *p = malloc((d->n_points + 1) * 3 * sizeof *p);
     float *out = malloc((d->n_points + 1) * 3 * sizeof *out);
@@ -143,9 +143,9 @@ int ted4_init_anchors(ted4_anchors *a, const ted4_layout *l, const ted4_dataset 
     if (!bad) {
         for (size_t i = 0; i < d->n_points; i++)
             ted4_normalise_point(&l->head, d->points + 3 * i, p + 3 * i);
-        *voxel = o->cell > 0 ? fmax(ldexp(o->cell, -l->head.exponent), TED4_FINEST_VOXEL)
-                             : typical_distance(p, d->n_points);
-        while ((n = voxelise(p, d->n_points, *voxel, out, &set)) > (size_t)o->init_anchors)
+        *voxel = cell > 0 ? fmax(ldexp(cell, -l->head.exponent), TED4_FINEST_VOXEL)
+                          : typical_distance(p, d->n_points);
+        while ((n = voxelise(p, d->n_points, *voxel, out, &set)) > most)
             *voxel *= 1.1;
         ted4_voxel_set_finish(&set);
         bad = ted4_anchors_resize(a, n) != 0;

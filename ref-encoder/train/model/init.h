@@ -7,11 +7,12 @@
 #include "data/dataset.h"
 #include "options.h"
 
-/* Places anchors on the voxel grid of the points, at most init_anchors of them (the voxel grows
- * until they fit). *voxel is set to its edge length, in normalised space. Returns 0, or -1 if
+/* Places anchors on the voxel grid of the points, at most `most` of them, which is 1 or more (the
+ * voxel grows until they fit). cell: the voxel's edge length in scene units, 0: the points' typical
+ * distance. *voxel is set to the edge length in the end, in normalised space. Returns 0, or -1 if
  * memory ran out. Source: paper, "Preliminary: ScaffoldGS". */
-int ted4_init_anchors(ted4_anchors *a, const ted4_layout *l, const ted4_dataset *d,
-                      const ted4_train_options *o, double *voxel);
+int ted4_init_anchors(ted4_anchors *a, const ted4_layout *l, const ted4_dataset *d, size_t most,
+                      double cell, double *voxel);
 
 /* Initialises the networks: weights uniform in +-1/sqrt(inputs), the last layer of F_deform zero,
  * and the bank N(0, 0.1), so that neither phi nor the bank starts at a saddle point (annex D.1,

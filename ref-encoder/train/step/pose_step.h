@@ -20,7 +20,7 @@ void ted4_update_poses(ted4_trainer *t);
 
 /* Ends the trial of refinement, if it is due: after a fifth of stage 1. Given poses that are right
  * only follow the noise of training, and cost quality if they do; so they are put back if what is
- * seen has moved by less than a quarter of a pixel. Otherwise refinement goes on until the end.
+ * seen has moved by less than half a pixel. Otherwise refinement goes on until the end.
  * t->poses.decision and t->poses.moved receive the result. */
 void ted4_poses_decide(ted4_trainer *t);
 

@@ -9,6 +9,7 @@
 #include "train/densify/camera_colour_init.h"
 #include "train/densify/camera_exposure_init.h"
 #include "train/densify/short_lived.h"
+#include "train/densify/viewpoints.h"
 #include "train/math/random.h"
 #include "train/model/header_from_options.h"
 #include "train/model/init.h"
@@ -64,6 +65,17 @@ static int make_images(ted4_trainer *t)
     return 0;
 }
 
+/* Half of max_anchors leaves room for growth and seeding. Where too few places are seen from, these
+ * can only guess at depths, which points know: there, points get all the room. */
+static size_t most_initial_anchors(const ted4_trainer *t)
+{
+    const size_t all = (size_t)t->opt.max_anchors;
+
+    if (t->opt.init_anchors > 0)
+        return (size_t)t->opt.init_anchors;
+    return ted4_has_viewpoints(t) ? (all + 1) / 2 : all;
+}
+
 /* Initialises everything, in the layout of h. */
 static int begin(ted4_trainer *t, const ted4_header *h)
 {
@@ -87,7 +99,8 @@ static int begin(ted4_trainer *t, const ted4_header *h)
     if (ted4_trainer_rebuild(t) != 0 || make_order(t) != 0 || make_images(t) != 0)
         return -1;
     if (ted4_anchors_init(&t->anchors, &t->layout) != 0 ||
-        ted4_init_anchors(&t->anchors, &t->layout, t->data, &t->opt, &t->voxel) != 0)
+        ted4_init_anchors(&t->anchors, &t->layout, t->data, most_initial_anchors(t), t->opt.cell,
+                          &t->voxel) != 0)
         return ted4_trainer_fail(t, "no memory for the anchors");
     if (t->anchors.n == 0)
         return ted4_trainer_fail(t, "no initial point lies inside the scene's bounds");
