@@ -17,7 +17,8 @@ for scene in occluder still pop turn; do
     for lambda in 0.0005 0.002 0.008; do
         file=$out/CNT-$scene-$lambda.ted4
         [ -f "$file" ] || "$bin/ted4enc" "$out/scene-$scene" -o "$file" --preset draft \
-            --capacity fixed $small --lambda $lambda --seed 1 -j 1 -q --stage1 "$out/$scene.stage1"
+            --profile main --capacity fixed $small --lambda $lambda --seed 1 -j 1 -q \
+            --stage1 "$out/$scene.stage1"
         "$bin/ted4dec" "$file" --test
     done
 done

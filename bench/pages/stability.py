@@ -9,7 +9,7 @@ from .earlier import earlier
 from .notes import read_notes
 from .rows import mark
 from .stability_marks import draw
-from .stability_rules import Cell
+from .stability_rules import RULES, Cell
 from .words import Page, signed
 
 MOST_SEED_SPREAD = 0.3  # dB, on easy scenes
@@ -45,6 +45,13 @@ class Lab:
         key = key if key in self.notes else f"{scene} *"
         self.unread.pop(key, None)
         return self.notes.get(key, "")
+
+    def cause(self, cell):
+        """The note of a scene and variant, and those of rules that have one for all scenes; "" when
+        a broken rule has neither."""
+        own = self.note(cell.scene, cell.variant)
+        of_rules = [self.notes.get(f"* {rule}", "") for rule in RULES if cell.breaks(rule)]
+        return " ".join(filter(None, [own] + of_rules)) if own or all(of_rules) else ""
 
 
 def write(runs, charts, results, _):

@@ -147,7 +147,7 @@ def failure_section(lab):
             cell = lab.cell(scene, variant)
             if not cell.marks():
                 continue
-            cause, is_whole = lab.note(scene, variant), variant == "whole"
+            cause, is_whole = lab.cause(cell), variant == "whole"
             lab.failures += is_whole
             lab.unexplained += is_whole and not cause
             page.row(scene, variant, failure_words(cell),

@@ -165,6 +165,7 @@ is so.
 ## wall inr
 Never shown.
 END
+rules_explained() { printf '\n## * %s\nOf this rule.\n' "$@" >>"$out/notes.md"; }
 make_page() { TED4_RESULTS=$out/page TED4_TABLE=$out/table.txt TED4_NOTES=$out/notes.md python3 \
     -m bench.pages stability "$out/states"; }
 make_page || { fail page "status $?"; exit 1; }
@@ -195,6 +196,14 @@ check strips "$page" '| wall-whole-1 | 28.00 | 3 | 1 | ![wall](lab/wall-whole-1.
 cp "$page" "$out/first.md"
 make_page && cmp -s "$page" "$out/first.md" && ok same_bytes ||
     fail same_bytes "the second page differs"
+
+# Notes on rules explain a failure when all of its rules have one.
+rules_explained gap
+make_page
+check one_rule "$page" '(1 of 3) | **unexplained** |'
+rules_explained drop
+make_page
+check all_rules "$page" '(1 of 3) | Of this rule. Of this rule. |' '1 scenes, 0 of them unexplained'
 
 # The same seed gives other bytes; a seed of an easy scene is far off; nothing fails on wall any
 # longer, and no anchor is thrown out there.
