@@ -166,11 +166,11 @@ static const ted4_command COMMAND = {
     "Presets: what each is for, and how long the scene of doc/training.md takes on 8\n"
     "cores (520 pictures of 240x135; twice the pixels or the times take less than\n"
     "twice as long):\n"
-    "  draft    a look at whether poses and pictures are right; 20 seconds\n"
-    "  fast     most of the quality, for trying options; 2 minutes\n"
-    "  medium   a file to keep; 10 minutes\n"
-    "  slow     more anchors and wider networks; 15 minutes\n"
-    "  paper    as many steps and anchors as the paper; 20 minutes\n\n"
+    "  draft    a look at whether poses and pictures are right; 25 seconds\n"
+    "  fast     most of the quality, for trying options; 1.5 minutes\n"
+    "  medium   a file to keep; 6 minutes\n"
+    "  slow     more anchors and longer stages; 10 minutes\n"
+    "  paper    as many steps and anchors as the paper; 30 minutes\n\n"
     "Training options (--set) and their values in each preset:\n",
     print_training_options,
 };
