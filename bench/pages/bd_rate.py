@@ -23,10 +23,10 @@ def write(runs, _charts, _results, _pages):
         those of bd_rate.txt, in small trainings. "before" is the encoder without profile Compact,
         at its own defaults of then; "compact" is profile Compact with three times the steps in
         stage 2; "masks" is the same with `mask_weight=1`; "seed2" and "seed3" are other seeds of
-        both. PSNR is that of held-out pictures, drawn from the
-        decoded file. Times of decoding are no comparison: other work ran beside them. † marks rows
-        that other sources made. What limits the profile, what else was tried, and times of
-        decoding side by side: [compact.md](compact.md).""")
+        both. PSNR is that of held-out pictures, drawn from the decoded file. Times of decoding are
+        no comparison: other work ran beside them. † marks rows that other sources made. What
+        limits the profile, what else was tried, and times of decoding side by side:
+        [compact.md](compact.md).""")
     page.prose(f"{sum(run.has() for run in runs.all)} of {len(runs.all)} rows are there"
                + made_with(runs.all) + ".")
     page.prose(bars.summary())
@@ -46,7 +46,7 @@ def change_of(runs, scene, variant):
 
 
 def compact_variants(runs, scene):
-    """Those of profile Compact as it is by default, one for each seed."""
+    """Those of profile Compact with masks as by default, one for each seed."""
     return [variant for variant in runs.variants
             if variant.startswith("compact") and runs.of(scene, variant)]
 

@@ -8,7 +8,6 @@
 
 #include "cell_view.h"
 #include "seed_anchor.h"
-#include "train/model/normalise.h"
 #include "train/state/arrangement.h"
 #include "viewpoints.h"
 
