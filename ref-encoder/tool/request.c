@@ -100,8 +100,8 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
     [OPT_STAGE1] = { 0, "stage1", "FILE", "begin with this end of stage 1, or make the file" },
     [OPT_LOG] = { 0, "log", "FILE", "JSON lines of progress; with --resume it goes on" },
     [OPT_PROFILE] = { 0, "profile", "NAME",
-                      "compact (default), or main, which is larger and which decoders of "
-                      "version 1.0 read, too" },
+                      "compact (default), or main: larger files, which decoders of version 1.0 "
+                      "read, too" },
     [OPT_TRANSCODE] = { 0, "transcode", "FILE",
                         "no training: write this file again, in the profile, without loss" },
     [OPT_TITLE] = { 0, "title", "TEXT", "title of the scene, for players and ted4info" },
