@@ -2,11 +2,11 @@
 #     awk -f branches.awk EXCLUDED SUITE TESTS
 # EXCLUDED is branches-excluded.txt; SUITE and TESTS are tables of branches.sh, after the vectors
 # and after the tests.
-# Outcomes that only a failing allocation or a caller's mistake can take stand apart, and a test has
-# to take them. Those that are listed for another reason count as not taken. Prints every outcome
-# that is not taken, each mistake of the list, totals. Fails below 99 %, and when the list is wrong:
-# a line that is not there or there twice, an outcome that the vectors take, one that stands apart
-# and no test takes.
+# Outcomes that only a failing allocation, a caller's mistake or a writer can take stand apart, and
+# a test has to take them. Those that are listed for another reason count as not taken. Prints every
+# outcome that is not taken, each mistake of the list, totals. Fails below 99 %, and when the list
+# is wrong: a line that is not there or there twice, an outcome that the vectors take, one that
+# stands apart and no test takes.
 # SPDX-License-Identifier: BSD-2-Clause
 BEGIN { FS = "\t" }
 FNR == 1 { part++ }
@@ -15,7 +15,7 @@ FNR == 1 { part++ }
 part == 1 {
     if ($0 ~ /^#/ || $0 == "")
         next
-    if (!match($0, / \| (allocation|caller|machine|size|never) [0-9][0-9,]* \| /)) {
+    if (!match($0, / \| (allocation|caller|writer|machine|size|never) [0-9][0-9,]* \| /)) {
         complain("not in the form of an entry: " $0)
         next
     }
@@ -45,7 +45,7 @@ part == 2 {
         complain("excluded, but the vectors take it: " place " | " $4)
     if ($5)
         next
-    apart = why == "allocation" || why == "caller"
+    apart = why == "allocation" || why == "caller" || why == "writer"
     count[why]++
     if (apart)
         waiting[place, $4] = place " | " $4
@@ -71,12 +71,13 @@ END {
         }
     for (key in waiting)
         complain("no test takes: " waiting[key])
-    total -= count["allocation"] + count["caller"]
+    total -= count["allocation"] + count["caller"] + count["writer"]
     printf "%d of %d branch outcomes taken: %.2f %%; ", good, total, \
            100 * good / (total > 0 ? total : 1)
     printf "not taken: %d of other machines, %d of larger files, %d never, %d others; ", \
            count["machine"], count["size"], count["never"], count[""]
-    printf "apart, for tests: %d of failing allocations, %d of mistakes of callers\n", \
+    printf "apart, for tests: %d of failing allocations, %d of mistakes of callers, ", \
            count["allocation"], count["caller"]
+    printf "%d of writing\n", count["writer"]
     exit wrong || total == 0 || good < 0.99 * total
 }

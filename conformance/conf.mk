@@ -34,9 +34,9 @@ conformance-cover: $B/ted4conf
 	$B/ted4conf cover --html out/coverage.html --json out/coverage.json
 
 # Branches of norm/ and read/ that they take, in one process, and whether tests take those that only
-# a failing allocation or a caller's mistake can take. Files made on demand come from another build:
-# what makes them takes branches too. Of the large ones one: but for its bytes a lower level would
-# do.
+# a failing allocation, a caller's mistake or a writer can take. Files made on demand come from
+# another build: what makes them takes branches too. Of the large ones one: but for its bytes a
+# lower level would do.
 BRANCH_TEST = build-gcov/tests/decoder/test_starved
 conformance-branches: $B/ted4conf
 	$(MAKE) B=build-gcov CC=gcc OPT=-O0 CFLAGS=--coverage LDFLAGS=--coverage \

@@ -1,6 +1,7 @@
 /* test_starved.c - branches of norm/ and read/ that no file takes. Every allocation fails, alone
  * and together with all later ones, in everything that the library does with a file: the result is
- * a verdict, no output, and no leak. Also mistakes of callers who write scenes.
+ * a verdict, no output, and no leak. Also what only writing takes of walks that readers and writers
+ * share, and mistakes of callers who write scenes.
  * conformance/branches-excluded.txt lists these branches, and `make conformance-branches` checks
  * that this test takes each.
  * SPDX-License-Identifier: BSD-2-Clause */
@@ -180,6 +181,30 @@ static void whole_files(void **state)
     ted4_scene_free(s);
 }
 
+/* The same in profile Compact, on the grid of 9 bits or on that of all binary16 values. */
+static ted4_scene *compact_example(unsigned grid)
+{
+    random_source r = random_seed(8);
+    ted4_header h = random_small_header(200);
+
+    return random_compact_of(&r, &h, 0, grid);
+}
+
+static void compact_files(void **state)
+{
+    static const unsigned grid[] = { 9, 16 };
+
+    (void)state;
+    for (size_t i = 0; i < sizeof grid / sizeof *grid; i++) {
+        ted4_scene *s = compact_example(grid[i]);
+        file f = encode(s);
+
+        starve_all(&f);
+        free(f.data);
+        ted4_scene_free(s);
+    }
+}
+
 /* Files for what a validator and a lenient decoder do after an error: a truncated file, a damaged
  * tile, positions out of order. */
 static void damaged_files(void **state)
@@ -259,6 +284,33 @@ static void wrong_masks(void **state)
     }
 }
 
+/* Positions of profile Compact that are no places of the grid, or whose order is not the tree's. */
+static void wrong_places(void **state)
+{
+    static const uint16_t off[] = { 0x0001, 0x3c00 }; /* 2^-24; 1, the end of the last cell */
+    ted4_scene *s = compact_example(9);
+    uint16_t *p = s->position + 3 * 4;
+    uint8_t *data;
+    size_t size;
+    ted4_error e;
+
+    (void)state;
+    for (size_t i = 0; i <= sizeof off / sizeof *off; i++) {
+        uint16_t was[6];
+
+        memcpy(was, p, sizeof was);
+        if (i < sizeof off / sizeof *off)
+            p[0] = off[i];
+        else { /* two anchors in each other's place */
+            memcpy(p, was + 3, 3 * sizeof *p);
+            memcpy(p + 3, was, 3 * sizeof *p);
+        }
+        assert_int_equal(ted4_encode(s, 0, NULL, &data, &size, &e), TED4_E_POS_COUNT);
+        memcpy(p, was, sizeof was);
+    }
+    ted4_scene_free(s);
+}
+
 /* Shifts that no walk has checked. */
 static void wrong_shift(void **state)
 {
@@ -280,8 +332,10 @@ static void wrong_shift(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(whole_files), cmocka_unit_test(damaged_files), cmocka_unit_test(vectors),
-        cmocka_unit_test(wrong_masks), cmocka_unit_test(wrong_shift),
+        cmocka_unit_test(whole_files),   cmocka_unit_test(compact_files),
+        cmocka_unit_test(damaged_files), cmocka_unit_test(vectors),
+        cmocka_unit_test(wrong_masks),   cmocka_unit_test(wrong_places),
+        cmocka_unit_test(wrong_shift),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

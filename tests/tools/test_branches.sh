@@ -32,6 +32,10 @@ expect other_reasons_count 0 \
     '201 of 202 branch outcomes taken: 99.50 %; not taken: 0 of other machines, 1 of larger files' \
     judge
 suite 'a.c f 9 0 1 if_(q)' 'a.c f 9 1 0 if_(q)'
+list 'a.c: f: if (q) | writer 1 | readers do not'
+table tests 'a.c f 9 1 1 if_(q)'
+expect of_writing 0 '201 of 201 branch outcomes taken: 100.00 %; not taken: 0 of other machines, 0 of larger files, 0 never, 0 others; apart, for tests: 0 of failing allocations, 0 of mistakes of callers, 1 of writing' judge
+table tests 'a.c f 7 1 1 if_(p)' 'a.c f 9 1 0 if_(q)'
 list 'a.c: f: if (q) | caller 1 | a mistake'
 expect no_test_takes 1 'no test takes: a.c: f: if (q) | 1' judge
 suite 'a.c f 7 0 0 if_(p)' 'a.c f 7 1 0 if_(p)' 'a.c f 8 0 0 if_(r)'
