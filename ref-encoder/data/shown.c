@@ -126,7 +126,7 @@ static void most_common(const bucket *count, uint8_t colour[3])
     for (size_t i = 1; i < BUCKETS; i++)
         best = count[i].n > best->n ? &count[i] : best;
     for (int k = 0; k < 3; k++)
-        colour[k] = best->n > 0 ? (uint8_t)((best->sum[k] + best->n / 2) / best->n) : 0;
+        colour[k] = (uint8_t)(best->n > 0 ? (best->sum[k] + best->n / 2) / best->n : 0);
 }
 
 /* Number of words in the mask of picture k. */

@@ -212,7 +212,7 @@ static ted4_rate_input rate_input(const lists *l)
 {
     return (ted4_rate_input) { &pr.layout,    pr.net,   NULL,     N_BLOCKS, l->attr,
                                l->position,   pr.lanes, pr.block, pr.key,   TED4_QUANT_NOISE,
-                               pr.bit_weight, 1.0f,     1 };
+                               pr.bit_weight, 1.0f,     1,        NULL };
 }
 
 /* Computes the values as rendered, and the residuals in units of their steps. */

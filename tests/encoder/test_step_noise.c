@@ -59,7 +59,8 @@ static double bits_with(ted4_trainer *t, const ted4_visible_blocks *step, uint64
                                  TED4_QUANT_NOISE,
                                  0.0f,
                                  0.0f,
-                                 t->layout.head.activation };
+                                 t->layout.head.activation,
+                                 NULL };
 
     ted4_rate_pack(t->work.rate, t->net.value);
     assert_int_equal(ted4_rate_evaluate(t->work.rate, &in, NULL, NULL, NULL, NULL, b.steps, bits),
