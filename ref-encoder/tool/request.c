@@ -168,7 +168,7 @@ static const ted4_command COMMAND = {
     "twice as long):\n"
     "  draft    a look at whether poses and pictures are right; 25 seconds\n"
     "  fast     most of the quality, for trying options; 1.5 minutes\n"
-    "  medium   a file to keep; 6 minutes\n"
+    "  medium   a file to keep; 5 minutes\n"
     "  slow     more anchors and longer stages; 10 minutes\n"
     "  paper    as many steps and anchors as the paper; 30 minutes\n\n"
     "Training options (--set) and their values in each preset:\n",
