@@ -38,6 +38,8 @@ expect of_writing 0 '201 of 201 branch outcomes taken: 100.00 %; not taken: 0 of
 table tests 'a.c f 7 1 1 if_(p)' 'a.c f 9 1 0 if_(q)'
 list 'a.c: f: if (q) | caller 1 | a mistake'
 expect no_test_takes 1 'no test takes: a.c: f: if (q) | 1' judge
+list 'a.c: f: if (q) | writer 1 | readers do not'
+expect no_test_writes 1 'no test takes: a.c: f: if (q) | 1' judge
 suite 'a.c f 7 0 0 if_(p)' 'a.c f 7 1 0 if_(p)' 'a.c f 8 0 0 if_(r)'
 list
 expect below_99 1 '200 of 203 branch outcomes taken: 98.52 %' judge
