@@ -10,6 +10,7 @@
 #include "test.h"
 #include "fuzz/counting.h"
 #include "fuzz/fix_hashes.h"
+#include "norm/octree.h"
 #include "random_scene.h"
 
 typedef struct {
@@ -171,17 +172,17 @@ static ted4_scene *example(void)
 }
 
 /* The same in profile Compact, on the grid of so many bits a coordinate. */
-static ted4_scene *compact_example(unsigned grid)
+static ted4_scene *compact_example(uint32_t n_anchors, unsigned grid)
 {
     random_source r = random_seed(8);
-    ted4_header h = random_small_header(200);
+    ted4_header h = random_small_header(n_anchors);
 
     return random_compact_of(&r, &h, 0, grid);
 }
 
 static void whole_files(void **state)
 {
-    ted4_scene *const all[] = { example(), compact_example(9), compact_example(16) };
+    ted4_scene *const all[] = { example(), compact_example(200, 9), compact_example(200, 16) };
 
     (void)state;
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
@@ -272,12 +273,26 @@ static void wrong_masks(void **state)
     }
 }
 
+/* Returns the positions of the first two anchors in the list whose cells have one parent, so that
+ * the tree is the same with either in the other's place. */
+static uint16_t *siblings(const ted4_scene *s)
+{
+    for (size_t i = 0; i + 1 < s->head.n_anchors; i++) {
+        uint16_t *p = s->position + 3 * i;
+
+        if (ted4_octree_key(p, s->grid) >> 3 == ted4_octree_key(p + 3, s->grid) >> 3)
+            return p;
+    }
+    fail_msg("no siblings");
+    return NULL;
+}
+
 /* Positions of profile Compact that are no places of the grid, or whose order is not the tree's. */
 static void wrong_places(void **state)
 {
     static const uint16_t off[] = { 0x0001, 0x3c00 }; /* 2^-24; 1, the end of the last cell */
-    ted4_scene *s = compact_example(9);
-    uint16_t *p = s->position + 3 * 4;
+    ted4_scene *s = compact_example(1000, 6);
+    uint16_t *p = siblings(s);
     uint8_t *data;
     size_t size;
     ted4_error e;
