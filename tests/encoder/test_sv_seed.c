@@ -101,6 +101,7 @@ static void test_found(void **state)
     take_turns(4, 1);
     begin(&t, NULL);
     assert_true(ted4_sv_seed_applies(&t));
+    ball_stop_motion(&t);
     before = t.anchors.n;
     seed(&t, MANY);
 
@@ -128,6 +129,7 @@ static void test_other_rigs(void **state)
         take_turns(1, cameras);
         begin(&t, NULL);
         assert_false(ted4_sv_seed_applies(&t));
+        ball_stop_motion(&t);
         seed(&t, MANY);
 
         const size_t n = ball_count_short_lived(&t, SPEED, 2.51f / (FRAMES - 1), &near);

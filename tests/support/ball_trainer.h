@@ -3,6 +3,8 @@
 #ifndef TED4_BALL_TRAINER_H
 #define TED4_BALL_TRAINER_H
 
+#include <string.h>
+
 #include "ball_scene.h"
 #include "test.h"
 #include "train/step/export_scene.h"
@@ -69,16 +71,34 @@ static inline void ball_train(ted4_trainer *t, uint64_t iteration)
             fail_msg("%s", t->message.text);
 }
 
-/* Sets the last n biases of the last layer of a network of NETR. */
-static inline void ball_set_biases(ted4_trainer *t, int net, size_t n, float value)
+/* Returns the number, in t->net, of the value behind the last of a network of NETR. */
+static inline size_t ball_net_end(const ted4_trainer *t, int net)
 {
     const ted4_net_shape *s = &t->layout.shape.netr[net];
     size_t end = t->layout.netr + s->first;
 
     for (int i = 0; i < s->n_layers; i++)
         end += ((size_t)s->dim[i] + 1) * s->dim[i + 1];
+    return end;
+}
+
+/* Sets the last n biases of the last layer of a network of NETR. */
+static inline void ball_set_biases(ted4_trainer *t, int net, size_t n, float value)
+{
+    const size_t end = ball_net_end(t, net);
+
     for (size_t i = 1; i <= n; i++)
         t->net.value[end - i] = value;
+}
+
+/* Sets the last layer of F_deform to zero, so that all anchors stand still where they are. */
+static inline void ball_stop_motion(ted4_trainer *t)
+{
+    const ted4_net_shape *s = &t->layout.shape.netr[TED4_NET_DEFORM];
+    const int last = s->n_layers - 1;
+    const size_t n = ((size_t)s->dim[last] + 1) * s->dim[last + 1];
+
+    memset(t->net.value + ball_net_end(t, TED4_NET_DEFORM) - n, 0, n * sizeof *t->net.value);
 }
 
 /* Ends the training and writes the file. */

@@ -89,8 +89,24 @@ static size_t choose_wide(const candidate *c, size_t n, size_t most, ted4_voxel_
     return choose(c, n, most, *wide, taken, chosen);
 }
 
+/* Adds the n chosen candidates as anchors, wide times as large as their places, in the order of
+ * frames. Returns 0, or -1 with t->message filled. */
+static int add_chosen(ted4_trainer *t, const candidate *c, const size_t *chosen, size_t n,
+                      double wide, ted4_seeding *s)
+{
+    for (uint32_t f = 0; f < t->data->n_frames; f++)
+        for (size_t i = 0; i < n; i++) {
+            ted4_place p = *c[chosen[i]].place;
+
+            p.size *= (float)wide;
+            if (p.frame == f && ted4_seeding_add(t, s, &p, &c[chosen[i]].span) != 0)
+                return -1;
+        }
+    return ted4_seeding_settle(t, s);
+}
+
 static int plant(ted4_trainer *t, const ted4_places *list, const ted4_photo_votes *s,
-                 const ted4_seed_parents *l)
+                 ted4_seeding *l)
 {
     const size_t n_old = t->anchors.n, max_anchors = (size_t)t->opt.max_anchors;
     const size_t allowance = n_old < max_anchors ? max_anchors - n_old : 0;
@@ -99,7 +115,7 @@ static int plant(ted4_trainer *t, const ted4_places *list, const ted4_photo_vote
     size_t *chosen = malloc((most + 1) * sizeof *chosen), n;
     ted4_voxel_set taken = { 0 };
     double wide;
-    int bad = 0;
+    int bad;
 
     if (c == NULL || chosen == NULL || ted4_voxel_set_init(&taken, most * t->data->n_frames) != 0) {
         free(chosen);
@@ -107,12 +123,7 @@ static int plant(ted4_trainer *t, const ted4_places *list, const ted4_photo_vote
         return ted4_trainer_fail(t, "no memory for new anchors");
     }
     n = choose_wide(c, list_candidates(list, s, c), most, &taken, chosen, &wide);
-    for (size_t i = 0; !bad && i < n; i++) {
-        ted4_place p = *c[chosen[i]].place;
-
-        p.size *= (float)wide;
-        bad = ted4_seed_add(t, l, &p, &c[chosen[i]].span) != 0;
-    }
+    bad = add_chosen(t, c, chosen, n, wide, l);
     ted4_voxel_set_finish(&taken);
     free(chosen);
     free(c);
@@ -141,7 +152,7 @@ int ted4_mv_seed(ted4_trainer *t)
 {
     ted4_places list = { 0 };
     ted4_photo_votes s = { 0 };
-    ted4_seed_parents l = { 0 };
+    ted4_seeding l = { 0 };
     float *point = NULL;
     uint8_t *colour = NULL;
     int bad = 0;
@@ -151,12 +162,12 @@ int ted4_mv_seed(ted4_trainer *t)
     if (!bad && arrange(&list, ted4_mv_seed_capacity(t->data->n_frames), &point, &colour) != 0)
         bad = ted4_trainer_fail(t, "no memory for new anchors");
     bad = bad || ted4_photo_votes_count(&s, t, point, colour, list.n) != 0 ||
-          ted4_seed_parents_measure(t, &l) != 0 || plant(t, &list, &s, &l) != 0;
+          ted4_seeding_begin(t, &l) != 0 || plant(t, &list, &s, &l) != 0;
     bad = bad || ted4_arrange_anchors(t) != 0;
     ted4_photo_votes_free(&s);
     free(list.item);
     free(point);
     free(colour);
-    ted4_seed_parents_free(&l);
+    ted4_seeding_finish(&l);
     return bad ? -1 : 0;
 }

@@ -1,5 +1,5 @@
-/* seed_anchor.h - the first values of an anchor that seeding adds (mv_seed.h, sv_seed.h). Depends
- * on trainer.h, photo_votes.h, plane_sweep.h.
+/* seed_anchor.h - the first values of anchors that seeding adds (mv_seed.h, sv_seed.h). Depends on
+ * trainer.h, photo_votes.h, plane_sweep.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_SEED_ANCHOR_H
 #define TED4_SEED_ANCHOR_H
@@ -7,20 +7,28 @@
 #include "photo_votes.h"
 #include "plane_sweep.h"
 
-/* The anchors before seeding, and their appearance (ted4_anchor_appearance). */
+/* The anchors before seeding, the parents, with their appearance (ted4_anchor_appearance), and what
+ * is known of the anchors that follow them. */
 typedef struct {
-    float *rgb, *opacity; /* owned: [n][3], [n] */
-    size_t n;
-} ted4_seed_parents;
+    float *rgb, *opacity; /* owned: [n_parents][3], [n_parents] */
+    size_t n_parents;
+    uint32_t *frame; /* owned: [n_added] in which the place of anchor n_parents + i was found */
+    size_t n_added, room;
+} ted4_seeding;
 
-/* Returns 0, or -1 with t->message filled; free l in either case. */
-int ted4_seed_parents_measure(ted4_trainer *t, ted4_seed_parents *l);
-void ted4_seed_parents_free(ted4_seed_parents *l);
+/* Measures the parents. Returns 0, or -1 with t->message filled; finish in either case. */
+int ted4_seeding_begin(ted4_trainer *t, ted4_seeding *s);
+void ted4_seeding_finish(ted4_seeding *s);
 
-/* Adds an anchor at a place, behind all others. It is active during the span. It takes its features
- * from the opaque parent with the most similar colour, and its motion from the nearest parent.
- * Returns 0, or -1 with t->message filled. */
-int ted4_seed_add(ted4_trainer *t, const ted4_seed_parents *l, const ted4_place *p,
-                  const ted4_span *span);
+/* Adds an anchor at a place, behind all others; the frames of places must not decrease. It is
+ * active during the span. It takes its features from the opaque parent with the most similar
+ * colour, and its motion from the nearest parent. Returns 0, or -1 with t->message filled. */
+int ted4_seeding_add(ted4_trainer *t, ted4_seeding *s, const ted4_place *p, const ted4_span *span);
+
+/* Moves all added anchors so that they are shown at their places in the frames of these: the motion
+ * that they took moves them elsewhere, as a rule by more than their size, where they would learn to
+ * vanish. The motion of an anchor that would have to leave the cube is closed instead. Returns 0,
+ * or -1 with t->message filled. */
+int ted4_seeding_settle(ted4_trainer *t, const ted4_seeding *s);
 
 #endif

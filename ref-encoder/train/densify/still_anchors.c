@@ -12,8 +12,6 @@
 #include "train/state/view_subset.h"
 #include "train/state/visible_blocks.h"
 
-/* The logit of a closed mask: it is shut, and stays so. */
-#define CLOSED (TED4_MASK_SHUT - 2.0f)
 /* A path is sampled at this many times at most. */
 enum { MOST_TIMES = 64 };
 /* Added to the opacity by which a time is weighted, for anchors that are never opaque. */
@@ -144,7 +142,7 @@ static int find_middles(ted4_trainer *t, survey *s)
         return ted4_trainer_fail(t, "no memory to look at motion");
     for (size_t i = 0; i < t->anchors.n; i++) {
         before[i] = *logit(t, i);
-        *logit(t, i) = CLOSED;
+        *logit(t, i) = TED4_MASK_CLOSED;
     }
     bad = generate(t, t->order.item[0], 0, &g) != 0;
     for (size_t i = 0; i < t->anchors.n; i++) {
@@ -230,7 +228,7 @@ static void decide(ted4_trainer *t, const survey *s)
         if (ted4_is_dynamic(t, i) && explains_nothing(t, s, i, price)) {
             for (int c = 0; c < 3; c++)
                 *position(t, i, c) += s->middle[3 * i + (size_t)c];
-            *logit(t, i) = CLOSED;
+            *logit(t, i) = TED4_MASK_CLOSED;
             t->closing.closed++;
         }
 }

@@ -321,13 +321,13 @@ static int prepare(const film *f, ted4_trainer *t, size_t most, selection *h)
 /* Turns the selection into anchors. Returns 0, or -1 with t->message filled. */
 static int plant(ted4_trainer *t, const selection *h)
 {
-    ted4_seed_parents l = { 0 };
-    int bad = ted4_seed_parents_measure(t, &l) != 0;
+    ted4_seeding s = { 0 };
+    int bad = ted4_seeding_begin(t, &s) != 0;
 
     for (size_t i = 0; !bad && i < h->n; i++)
-        bad = ted4_seed_add(t, &l, &h->item[i].place, &h->item[i].span) != 0;
-    bad = bad || ted4_arrange_anchors(t) != 0;
-    ted4_seed_parents_free(&l);
+        bad = ted4_seeding_add(t, &s, &h->item[i].place, &h->item[i].span) != 0;
+    bad = bad || ted4_seeding_settle(t, &s) != 0 || ted4_arrange_anchors(t) != 0;
+    ted4_seeding_finish(&s);
     return bad ? -1 : 0;
 }
 

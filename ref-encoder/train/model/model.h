@@ -43,6 +43,9 @@ static inline int ted4_mask_shut(float logit)
     return logit < TED4_MASK_SHUT;
 }
 
+/* The logit of a mask of motion that is closed on purpose: far enough below to stay so. */
+#define TED4_MASK_CLOSED (TED4_MASK_SHUT - 2.0f)
+
 /* Returns the number of floats in n rows of lanes. */
 static inline size_t ted4_row_floats(size_t n)
 {
