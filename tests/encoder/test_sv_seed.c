@@ -41,6 +41,7 @@ static ted4_train_options options(void)
 {
     ted4_train_options o = ball_options();
 
+    o.stage1 = 10 * STEPS;
     o.sprouts = 0.5;
     o.max_anchors = 400;
     return o;
@@ -237,7 +238,7 @@ static void test_spread(void **state)
     ted4_trainer_finish(&t);
 }
 
-/* Seeding takes the anchors that growth leaves, at a fifth of stage 1. */
+/* Seeding takes the anchors that growth leaves, at a tenth of stage 1. */
 static void test_schedule(void **state)
 {
     const ted4_train_options o = options();

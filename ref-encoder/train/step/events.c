@@ -18,7 +18,7 @@
  * and before activation is learnt. If no frame has enough cameras, nothing else finds moving
  * things, so it precedes the probe. */
 #define SEED_AT             0.3
-#define SEED_AT_SINGLE_VIEW 0.2
+#define SEED_AT_SINGLE_VIEW 0.1
 
 /* Share of stage 1 before still anchors are closed: most growth is over, and what is left of the
  * stage repairs what closing changed. */
