@@ -162,11 +162,11 @@ make_stage1() {
     train "${stage1_file%.stage1}" $stage1 --set stage2=0 && [ -s "$stage1_file" ]
 }
 
-# Sources that are known to write the same bytes as $1, by the table equal.csv among the results,
-# with blanks around.
+# Sources that are known to write the same bytes for the scene $where as $1, by the table equal.csv
+# among the results, with blanks around.
 equal_to() {
-    [ ! -f "$results/equal.csv" ] || awk -F, -v now="$1" '
-        NR > 1 { from[NR] = $1; to[NR] = $2 }
+    [ ! -f "$results/equal.csv" ] || awk -F, -v now="$1" -v where="$where" '
+        NR > 1 && ($4 == "" || where !~ "^(" $4 ")$") { from[NR] = $1; to[NR] = $2 }
         END {
             known[now] = 1
             do {
@@ -185,12 +185,8 @@ equal_to() {
 # Was the row with the key $had made by other sources, which are known to write the same bytes?
 is_equal() {
     made=${had##*-}
-    case $sources_now in
-    "$version") equal=$equal_version ;;
-    *)          equal=$equal_own ;;
-    esac
     case $made in *"$measured") made=${made%"$measured"} ;; *) return 1 ;; esac
-    case $equal in *" $made "*) return 0 ;; *) return 1 ;; esac
+    case $(equal_to "$sources_now") in *" $made "*) return 0 ;; *) return 1 ;; esac
 }
 
 # done, equal (made by sources of the same bytes), older (same options, other sources), stale or
@@ -336,8 +332,6 @@ begin_runs() {
         die "$csv has other columns than this script writes"
     version=$(sources)
     own_version=$(sources tools/scene/*.[ch])
-    equal_version=$(equal_to "$version")
-    equal_own=$(equal_to "$own_version")
     measured=
     [ -z "$judges" ] || measured=.$(awk -f bench/sources.awk $judges | short_hash)
     chosen=$(each_chosen) || exit 3

@@ -186,7 +186,6 @@ static void test_parents(void **state)
     (void)state;
     ball_begin(&t, &o, &balls, NULL);
     ball_train(&t, STEPS);
-    ball_stop_motion(&t);
     read_parents(&t, &p);
     for (uint32_t f = 0; f < FRAMES; f++)
         assert_int_equal(ted4_mv_seed_search(&t, f, &list), 0);

@@ -131,7 +131,6 @@ static double check_budget(size_t most)
     assert_non_null(chosen);
     ball_begin(&t, &o, &balls, NULL);
     ball_train(&t, STEPS);
-    ball_stop_motion(&t);
     find_wanted(&t, &w);
     while (choose_slowly(&w, most, 2 * wide, chosen) == most)
         wide *= 2;

@@ -109,10 +109,12 @@ now=$(cell wall-whole-1 key); made=${now%-*}-0123456789; rest=${now##*-}
 judged=; case $rest in *.*) judged=.${rest#*.} ;; esac
 sed -i "s/$now/$made$judged/" "$out/res/stability.csv"
 [ "$(state)" = older ] && ok older || fail older "$(state)"
-echo "from,to,cases,proof
-0123456789,aaaaaaaaaa,1,one
-aaaaaaaaaa,${rest%%.*},1,another" >"$out/res/equal.csv"
+echo "from,to,cases,but,proof
+0123456789,aaaaaaaaaa,1,,one
+aaaaaaaaaa,${rest%%.*},1,calm|al,another" >"$out/res/equal.csv"
 [ "$(state)" = equal ] && ok equal_by_two_steps || fail equal_by_two_steps "$(state)"
+sed -i "s/calm|al/calm|own:hide.*/" "$out/res/equal.csv"
+[ "$(state)" = older ] && ok equal_but_for_a_scene || fail equal_but_for_a_scene "$(state)"
 sed -i '$d' "$out/res/equal.csv"
 [ "$(state)" = older ] && ok equal_to_others || fail equal_to_others "$(state)"
 rm "$out/res/equal.csv"

@@ -89,22 +89,6 @@ static size_t choose_wide(const candidate *c, size_t n, size_t most, ted4_voxel_
     return choose(c, n, most, *wide, taken, chosen);
 }
 
-/* Adds the n chosen candidates as anchors, wide times as large as their places, in the order of
- * frames. Returns 0, or -1 with t->message filled. */
-static int add_chosen(ted4_trainer *t, const candidate *c, const size_t *chosen, size_t n,
-                      double wide, ted4_seeding *s)
-{
-    for (uint32_t f = 0; f < t->data->n_frames; f++)
-        for (size_t i = 0; i < n; i++) {
-            ted4_place p = *c[chosen[i]].place;
-
-            p.size *= (float)wide;
-            if (p.frame == f && ted4_seeding_add(t, s, &p, &c[chosen[i]].span) != 0)
-                return -1;
-        }
-    return ted4_seeding_settle(t, s);
-}
-
 static int plant(ted4_trainer *t, const ted4_places *list, const ted4_photo_votes *s,
                  ted4_seeding *l)
 {
@@ -115,7 +99,7 @@ static int plant(ted4_trainer *t, const ted4_places *list, const ted4_photo_vote
     size_t *chosen = malloc((most + 1) * sizeof *chosen), n;
     ted4_voxel_set taken = { 0 };
     double wide;
-    int bad;
+    int bad = 0;
 
     if (c == NULL || chosen == NULL || ted4_voxel_set_init(&taken, most * t->data->n_frames) != 0) {
         free(chosen);
@@ -123,7 +107,12 @@ static int plant(ted4_trainer *t, const ted4_places *list, const ted4_photo_vote
         return ted4_trainer_fail(t, "no memory for new anchors");
     }
     n = choose_wide(c, list_candidates(list, s, c), most, &taken, chosen, &wide);
-    bad = add_chosen(t, c, chosen, n, wide, l);
+    for (size_t i = 0; !bad && i < n; i++) {
+        ted4_place p = *c[chosen[i]].place;
+
+        p.size *= (float)wide;
+        bad = ted4_seeding_add(t, l, &p, &c[chosen[i]].span) != 0;
+    }
     ted4_voxel_set_finish(&taken);
     free(chosen);
     free(c);

@@ -20,15 +20,15 @@ typedef struct {
 int ted4_seeding_begin(ted4_trainer *t, ted4_seeding *s);
 void ted4_seeding_finish(ted4_seeding *s);
 
-/* Adds an anchor at a place, behind all others; the frames of places must not decrease. It is
- * active during the span. It takes its features from the opaque parent with the most similar
- * colour, and its motion from the nearest parent. Returns 0, or -1 with t->message filled. */
+/* Adds an anchor at a place, behind all others. It is active during the span. It takes its features
+ * from the opaque parent with the most similar colour, and its motion from the nearest parent.
+ * Returns 0, or -1 with t->message filled. */
 int ted4_seeding_add(ted4_trainer *t, ted4_seeding *s, const ted4_place *p, const ted4_span *span);
 
-/* Moves all added anchors so that they are shown at their places in the frames of these: the motion
- * that they took moves them elsewhere, as a rule by more than their size, where they would learn to
- * vanish. The motion of an anchor that would have to leave the cube is closed instead. Returns 0,
- * or -1 with t->message filled. */
+/* Moves all added anchors so that they are shown at their places in the frames of these, which must
+ * be in order: the motion that they took moves them elsewhere, before one camera by more than their
+ * size as a rule, where they would learn to vanish. The motion of an anchor that would have to
+ * leave the cube is closed instead. Returns 0, or -1 with t->message filled. */
 int ted4_seeding_settle(ted4_trainer *t, const ted4_seeding *s);
 
 #endif

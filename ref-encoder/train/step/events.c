@@ -16,7 +16,8 @@
 
 /* Seeding takes place once static content is rendered well enough for everything else to stand out,
  * and before activation is learnt. If no frame has enough cameras, nothing else finds moving
- * things, so it precedes the probe. */
+ * things: then it precedes the probe, and comes early, because anchors that stand still learn to
+ * imitate what moves, as a blur that new anchors do not undo. */
 #define SEED_AT             0.3
 #define SEED_AT_SINGLE_VIEW 0.1
 
