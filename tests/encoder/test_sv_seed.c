@@ -13,6 +13,7 @@
 #include "odd_threads.h"
 #include "train/densify/cell_view.h"
 #include "train/densify/sv_seed.h"
+#include "train/state/anchor_masks.h"
 #include "train/state/picture.h"
 #include "train/step/events.h"
 
@@ -64,13 +65,15 @@ static void seed(ted4_trainer *t, size_t most)
 /* ---- where ---- */
 
 /* Returns whether a training picture of some frame at which anchor i is active sees it within a
- * thousandth of a pixel of the middle of a pixel; cells are pixels here. */
-static int is_on_ray(const ted4_trainer *t, size_t i)
+ * thousandth of a pixel of the middle of a pixel; cells are pixels here. shift: by how much anchors
+ * that move are moved, on each axis, at all times. */
+static int is_on_ray(const ted4_trainer *t, size_t i, float shift)
 {
     float p[3], centre[3];
 
     for (int k = 0; k < 3; k++)
-        p[k] = *ted4_anchor_value(&t->anchors, TED4_ROW_POSITION, i, k);
+        p[k] = *ted4_anchor_value(&t->anchors, TED4_ROW_POSITION, i, k) +
+               (ted4_is_dynamic(t, i) ? shift : 0.0f);
     for (size_t k = 0; k < balls.n_pictures; k++) {
         const ted4_picture *pic = &balls.pictures[k];
         ted4_view v;
@@ -114,7 +117,32 @@ static void test_found(void **state)
     assert_int_equal(n, t.anchors.n - before);
     assert_true(10 * near > 6 * n);
     for (size_t i = 0; i < t.anchors.n; i++)
-        assert_true(!ted4_is_short_lived(&t, i) || is_on_ray(&t, i));
+        assert_true(!ted4_is_short_lived(&t, i) || is_on_ray(&t, i, 0));
+    ted4_trainer_finish(&t);
+}
+
+/* Whatever motion a new anchor takes from its parent, its ray is right. */
+static void test_moved(void **state)
+{
+    const float shift = 0.05f;
+    ted4_trainer t;
+    size_t moving = 0;
+
+    (void)state;
+    take_turns(4, 1);
+    begin(&t, NULL);
+    ball_stop_motion(&t);
+    ball_set_biases(&t, TED4_NET_DEFORM, 3 + t.layout.head.feature_dim, shift);
+    for (size_t i = 0; i < t.anchors.n; i++)
+        *ted4_anchor_value(&t.anchors, TED4_ROW_VALUE, i, t.layout.temporal_logit) = 1.0f;
+    seed(&t, MANY);
+    for (size_t i = 0; i < t.anchors.n; i++) {
+        if (!ted4_is_short_lived(&t, i))
+            continue;
+        moving += ted4_is_dynamic(&t, i);
+        assert_true(is_on_ray(&t, i, shift));
+    }
+    assert_true(moving > 100);
     ted4_trainer_finish(&t);
 }
 
@@ -140,7 +168,7 @@ static void test_other_rigs(void **state)
         if (cameras == 2)
             assert_true(2 * near > n);
         for (size_t i = 0; i < t.anchors.n; i++)
-            assert_true(!ted4_is_short_lived(&t, i) || is_on_ray(&t, i));
+            assert_true(!ted4_is_short_lived(&t, i) || is_on_ray(&t, i, 0));
         ted4_trainer_finish(&t);
     }
 }
@@ -349,11 +377,11 @@ static void test_cells(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_found),       cmocka_unit_test(test_other_rigs),
-        cmocka_unit_test(test_budget),      cmocka_unit_test(test_schedule),
-        cmocka_unit_test(test_sizes),       cmocka_unit_test(test_spread),
-        cmocka_unit_test(test_not_applied), cmocka_unit_test(test_threads),
-        cmocka_unit_test(test_cells),
+        cmocka_unit_test(test_found),      cmocka_unit_test(test_moved),
+        cmocka_unit_test(test_other_rigs), cmocka_unit_test(test_budget),
+        cmocka_unit_test(test_schedule),   cmocka_unit_test(test_sizes),
+        cmocka_unit_test(test_spread),     cmocka_unit_test(test_not_applied),
+        cmocka_unit_test(test_threads),    cmocka_unit_test(test_cells),
     };
 
     return cmocka_run_group_tests_name("sv_seed", tests, set_up_without_blue, tear_down);

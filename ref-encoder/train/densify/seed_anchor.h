@@ -27,7 +27,8 @@ int ted4_seeding_add(ted4_trainer *t, ted4_seeding *s, const ted4_place *p, cons
 
 /* Moves all added anchors so that they are shown at their places in the frames of these, which must
  * be in order: the motion that they took moves them elsewhere, before one camera by more than their
- * size as a rule, where they would learn to vanish. The motion of an anchor that would have to
+ * size as a rule, where they would learn to vanish. Where the motion itself depends on the position
+ * (TED4_MOTION_INR), it is that of the place. The mask of motion of an anchor that would have to
  * leave the cube is closed instead. Returns 0, or -1 with t->message filled. */
 int ted4_seeding_settle(ted4_trainer *t, const ted4_seeding *s);
 
