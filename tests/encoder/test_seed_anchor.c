@@ -9,7 +9,6 @@
 #include "ball_group.h"
 #include "train/densify/seed_anchor.h"
 #include "train/state/anchor_masks.h"
-#include "train/state/visible_blocks.h"
 
 /* Anchors that are added in each frame: more and fewer than fill a block, and none. */
 static const size_t added[FRAMES] = { 40, 3, 0, 70, 1 };
@@ -19,18 +18,9 @@ enum { STEPS = 120, ADDED = 114 };
 static void show(ted4_trainer *t, size_t n, uint32_t frame, float (*to)[3])
 {
     const size_t K = t->layout.head.n_offsets;
-    ted4_generate_input in = {
-        .layout = &t->layout, .net = t->net.value, .num = frame, .den = FRAMES - 1
-    };
     ted4_splats s;
 
-    assert_int_equal(ted4_visible_blocks_fill(t, NULL), 0);
-    in.n_visible = t->visible_blocks.n;
-    in.attr = t->visible_blocks.raw;
-    in.position = t->visible_blocks.position;
-    in.lanes = t->visible_blocks.lanes;
-    ted4_generator_pack(t->work.generator, t->net.value);
-    assert_int_equal(ted4_generate(t->work.generator, &in, NULL, &s), 0);
+    ball_generate(t, frame, &s);
     for (size_t i = n; i < t->anchors.n; i++)
         for (int c = 0; c < 3; c++)
             to[i - n][c] = s.mean[c][i / TED4_LANES * K * TED4_LANES + i % TED4_LANES];
@@ -50,12 +40,13 @@ static void begin(ted4_trainer *t, const ted4_train_options *o, float shift)
         *ted4_anchor_value(&t->anchors, TED4_ROW_VALUE, i, t->layout.temporal_logit) = 1.0f;
 }
 
-/* Adds anchors on a line through the middle of the cube, edge half-sizes long on either side.
- * place: [ADDED]. */
+/* Begins seeding, and adds anchors on a line through the middle of the cube, edge half-sizes long
+ * on either side. place: [ADDED]. */
 static void add(ted4_trainer *t, float edge, ted4_seeding *s, ted4_place *place)
 {
     size_t n = 0;
 
+    assert_int_equal(ted4_seeding_begin(t, s), 0);
     for (uint32_t f = 0; f < FRAMES; f++)
         for (size_t i = 0; i < added[f]; i++, n++) {
             const float x = edge * (2.0f * (float)n / (ADDED - 1) - 1.0f);
@@ -102,7 +93,6 @@ static void test_shown_there(void **state)
 
     (void)state;
     begin(&t, &o, 0.2f);
-    assert_int_equal(ted4_seeding_begin(&t, &s), 0);
     add(&t, 0.5f, &s, place);
     assert_true(farthest(&t, &s, place) > 0.15f);
     assert_int_equal(ted4_seeding_settle(&t, &s), 0);
@@ -122,7 +112,6 @@ static void test_edge(void **state)
 
     (void)state;
     begin(&t, &o, 0.2f);
-    assert_int_equal(ted4_seeding_begin(&t, &s), 0);
     add(&t, 1.0f, &s, place);
     assert_int_equal(ted4_seeding_settle(&t, &s), 0);
     assert_true(farthest(&t, &s, place) < 1e-6f);
@@ -145,7 +134,6 @@ static void test_still(void **state)
     (void)state;
     o.motion = TED4_MOTION_NONE;
     begin(&t, &o, 0);
-    assert_int_equal(ted4_seeding_begin(&t, &s), 0);
     add(&t, 1.0f, &s, place);
     assert_int_equal(ted4_seeding_settle(&t, &s), 0);
     for (size_t i = 0; i < ADDED; i++)

@@ -9,12 +9,10 @@
 #include "test.h"
 #include "ball_group.h"
 #include "train/densify/still_anchors.h"
-#include "train/model/normalise.h"
 #include "train/monitor/checkpoint.h"
 #include "train/state/anchor_masks.h"
 #include "train/state/dropout.h"
 #include "train/state/picture.h"
-#include "train/state/visible_blocks.h"
 
 /* With 800 steps of stage 1, anchors are closed before step 520. */
 enum { EARLY = 512, CLOSING = 520, MOST_ANCHORS = 320 };
@@ -66,19 +64,9 @@ static void add_frame(ted4_trainer *t, uint32_t frame, double *sum)
 {
     const ted4_layout *l = &t->layout;
     const size_t K = l->head.n_offsets;
-    ted4_view v;
     ted4_splats s;
-    ted4_generate_input in = { .layout = l, .net = t->net.value, .num = frame, .den = FRAMES - 1 };
 
-    assert_int_equal(ted4_visible_blocks_fill(t, NULL), 0);
-    ted4_normalise_view(&l->head, &balls.pictures[0].camera, &v, in.camera);
-    in.n_visible = t->visible_blocks.n;
-    in.attr = t->visible_blocks.raw;
-    in.position = t->visible_blocks.position;
-    in.lanes = t->visible_blocks.lanes;
-    in.activation = l->head.activation;
-    ted4_generator_pack(t->work.generator, t->net.value);
-    assert_int_equal(ted4_generate(t->work.generator, &in, NULL, &s), 0);
+    ball_generate(t, frame, &s);
     for (size_t i = 0; i < t->anchors.n; i++) {
         const size_t at = i / TED4_LANES * K * TED4_LANES + i % TED4_LANES;
         double w = 1e-6;

@@ -8,7 +8,9 @@
 #include "ball_scene.h"
 #include "test.h"
 #include "train/step/export_scene.h"
+#include "train/model/normalise.h"
 #include "train/state/trainer.h"
+#include "train/state/visible_blocks.h"
 #include "train/step/trainer_init.h"
 #include "train/train.h"
 #include "write/encode.h"
@@ -99,6 +101,28 @@ static inline void ball_stop_motion(ted4_trainer *t)
     const size_t n = ((size_t)s->dim[last] + 1) * s->dim[last + 1];
 
     memset(t->net.value + ball_net_end(t, TED4_NET_DEFORM) - n, 0, n * sizeof *t->net.value);
+}
+
+/* Generates the Gaussians of all anchors at a frame, as the camera of the first picture sees them.
+ */
+static inline void ball_generate(ted4_trainer *t, uint32_t frame, ted4_splats *s)
+{
+    const ted4_layout *l = &t->layout;
+    ted4_view v;
+    ted4_generate_input in = { .layout = l,
+                               .net = t->net.value,
+                               .num = frame,
+                               .den = t->data->n_frames - 1,
+                               .activation = l->head.activation };
+
+    assert_int_equal(ted4_visible_blocks_fill(t, NULL), 0);
+    ted4_normalise_view(&l->head, &t->data->pictures[0].camera, &v, in.camera);
+    in.n_visible = t->visible_blocks.n;
+    in.attr = t->visible_blocks.raw;
+    in.position = t->visible_blocks.position;
+    in.lanes = t->visible_blocks.lanes;
+    ted4_generator_pack(t->work.generator, t->net.value);
+    assert_int_equal(ted4_generate(t->work.generator, &in, NULL, s), 0);
 }
 
 /* Ends the training and writes the file. */
