@@ -40,18 +40,20 @@ found=
 mkdir -p "$own"
 while left=$((total - $(had))) && [ "$left" -gt 0 ]; do
     now=$((left < slice ? left : slice))
-    before=$(finds)
+    before=$(finds) began=$(date +%s)
     mkdir -p "$scratch"
     # shellcheck disable=SC2086 # none or one
     TMPDIR=$scratch "$build/fuzz/fuzz_$name" -max_total_time="$now" -max_len=4096 \
         -dict=$dictionary -timeout=100 -rss_limit_mb=2500 -malloc_limit_mb=2500 \
         -print_final_stats=1 -artifact_prefix="$build/found/$name-" \
         "$own" "fuzz/corpus/$seeds" $found >"$log" 2>&1 || :
+    ran=$(($(date +%s) - began))        # less than a slice after a find or a signal
+    [ "$ran" -lt "$now" ] || ran=$now
     rm -rf "$scratch"                   # libFuzzer ends without the handlers that would
     drop_starved
     after=$(finds)
     grep -q '^stat::' "$log" || { echo "$name: did not run, see $log" >&2; exit 1; }
-    awk -v row="$name,$kind,$key,$now" -v finds=$((after - before)) \
+    awk -v row="$name,$kind,$key,$ran" -v finds=$((after - before)) \
         -v inputs="$(find "$own" -type f | wc -l)" '
         / cov: / { for (i = 1; i < NF; i++) if ($i == "cov:") edges = $(i + 1) }
         /^stat::number_of_executed_units/ { n = $2 }
