@@ -1,8 +1,9 @@
 // clock.js - the time that is shown: playing, stepping, looping. position is in frames, from 0 to
 // frames - 1, and may lie between two.
 // SPDX-License-Identifier: BSD-2-Clause
+import { timeOf } from "../src/times.js";
 
-const PARTS = 8; // of a frame, to which times are rounded
+const PARTS = 8; // of a frame, to which positions are rounded
 
 export class Clock {
   frames = 1;
@@ -12,12 +13,18 @@ export class Clock {
   isPlaying = false;
   sought = () => {}; // is called after seek and step
   #position = 0;
+  #exact = null; // the query of the position where that is known
   #last = 0;
 
   // A new scene, from its start.
   reset(frames, rate) {
     Object.assign(this, { frames, rate, isPlaying: false });
-    this.#position = 0;
+    this.#put(0);
+  }
+
+  #put(position) {
+    this.#position = position;
+    this.#exact = null;
   }
 
   get position() {
@@ -25,13 +32,22 @@ export class Clock {
   }
 
   seek(position) {
-    this.#position = Math.min(Math.max(position, 0), this.frames - 1);
+    this.#put(Math.min(Math.max(position, 0), this.frames - 1));
+    this.sought();
+  }
+
+  // To the time of a query, which is not rounded. Denominator 0: of no time, so that it stays.
+  seekTo({ num, den }) {
+    if (den !== 0) {
+      this.#position = num * (this.frames - 1) / den;
+      this.#exact = { num, den };
+    }
     this.sought();
   }
 
   play(now) {
     if (this.frames === 1) return;
-    if (!this.isLooping && this.position === this.frames - 1) this.#position = 0;
+    if (!this.isLooping && this.position === this.frames - 1) this.#put(0);
     this.isPlaying = true;
     this.#last = now;
   }
@@ -50,7 +66,7 @@ export class Clock {
   // now: milliseconds. The last frame is shown as long as the others.
   advance(now) {
     if (!this.isPlaying) return;
-    this.#position += (now - this.#last) / 1000 * this.rate * this.speed;
+    this.#put(this.#position + (now - this.#last) / 1000 * this.rate * this.speed);
     this.#last = now;
     if (this.#position < this.frames) return;
     if (this.isLooping) {
@@ -63,17 +79,11 @@ export class Clock {
 
   // Of spec 11.1; whole frames are exact.
   get query() {
-    if (this.frames === 1) return { num: 0, den: 1 };
-    return { num: Math.round(PARTS * this.position), den: PARTS * (this.frames - 1) };
+    return this.#exact ?? timeOf(Math.round(PARTS * this.position), PARTS * (this.frames - 1));
   }
 
   // The position as a part of the whole time, from 0 to 1; not rounded.
   get part() {
     return this.frames === 1 ? 0 : this.position / (this.frames - 1);
-  }
-
-  // The position of a query.
-  positionOf({ num, den }) {
-    return den === 0 ? this.position : num / den * (this.frames - 1);
   }
 }

@@ -51,11 +51,11 @@ function showOpened() {
   timeline.reset();
 }
 
-// since: when the file was asked for.
-async function open(name, reading, since) {
+// since: when the file was asked for; fragment: of its address.
+async function open(name, reading, since, fragment = "") {
   showMessage("");
   try {
-    await player.open(new Uint8Array(await reading), name, since);
+    await player.open(new Uint8Array(await reading), name, since, fragment);
     showOpened();
   } catch (error) {
     showMessage(explain(name, error));
@@ -134,8 +134,9 @@ function frame() {
 }
 requestAnimationFrame(frame);
 
+addEventListener("hashchange", () => player.seekFragment(location.hash));
 const address = new URLSearchParams(location.search).get("file");
-if (embedded.scene) open(embedded.name, embedded.scene, 0);
-else if (address) open(address.split("/").pop(), read(address), 0);
+if (embedded.scene) open(embedded.name, embedded.scene, 0, location.hash);
+else if (address) open(address.split("/").pop(), read(address), 0, location.hash);
 
 globalThis.ted4Player = player; // for scripts of the page

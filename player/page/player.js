@@ -1,6 +1,7 @@
 // player.js - a file on the screen: decodes and evaluates in workers, and keeps the picture at the
 // time and the camera that are wanted now. It knows nothing of the page around its canvas.
 // SPDX-License-Identifier: BSD-2-Clause
+import { timeOfFragment } from "../src/times.js";
 import { centreOf, fitted } from "./camera.js";
 import { bytesByType, camerasOf, chunksOf, metaOf } from "./chunks.js";
 import { Clock } from "./clock.js";
@@ -50,9 +51,9 @@ export class Player {
     this.#view.onFrame((now) => this.#tick(now), () => { this.statistics.drawn++; });
   }
 
-  // Shows a file from its start. since: when it was asked for. Rejects with Ted4Error; then what
-  // was there before stays.
-  async open(bytes, name, since = performance.now()) {
+  // Shows a file from its start, or from the time that the fragment of its address says. since:
+  // when it was asked for. Rejects with Ted4Error; then what was there before stays.
+  async open(bytes, name, since = performance.now(), fragment = "") {
     const opening = this.#evaluators.open(bytes);
     // Starting to draw takes this thread as long as decoding takes the worker.
     this.#started ??= this.#startView();
@@ -73,7 +74,14 @@ export class Player {
     this.#view.clear();
     this.#view.setBackground(scene.info.background);
     Object.assign(this.navigation, { up, ...start });
-    if (isSeen) this.useCamera(0);
+    if (isSeen) this.useCamera(0, timeOfFragment(fragment, scene.info));
+    else this.seekFragment(fragment);
+  }
+
+  // To the time that the fragment of an address says, if it says one.
+  seekFragment(fragment) {
+    const time = this.file === null ? undefined : timeOfFragment(fragment, this.file.info);
+    if (time !== undefined) this.clock.seekTo(time);
   }
 
   // The file's cameras, then those of its path.
@@ -81,12 +89,11 @@ export class Player {
     return this.file === null ? [] : [...this.file.cameras.cameras, ...this.file.cameras.path];
   }
 
-  // Looks through a camera of the file, at its time.
-  useCamera(i) {
-    const camera = this.cameras[i];
+  // Looks through a camera of the file, at its time or another one.
+  useCamera(i, time = this.cameras[i]) {
     this.followsPath = false;
-    this.navigation.camera = camera;
-    this.clock.seek(this.clock.positionOf(camera));
+    this.navigation.camera = this.cameras[i];
+    this.clock.seekTo(time);
   }
 
   // Whether the camera is the one that the file's path has at the time that is shown. It ends when

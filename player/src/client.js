@@ -2,6 +2,7 @@
 // answered in order.
 // SPDX-License-Identifier: BSD-2-Clause
 import { Ted4Error } from "./decoder.js";
+import { timeOfFrame } from "./times.js";
 
 function restored(e) {
   if (e.id === undefined) return new Error(e.message);
@@ -53,8 +54,10 @@ export class Ted4Client {
     return {
       ...opened,
       gaussians,
-      frame: (j, camera) => opened.info.frames > 1
-        ? gaussians(j, opened.info.frames - 1, camera) : gaussians(0, 1, camera),
+      frame: (j, camera) => {
+        const { num, den } = timeOfFrame(j, opened.info);
+        return gaussians(num, den, camera);
+      },
       close: () => this.#ask({ type: "close", scene }),
     };
   }

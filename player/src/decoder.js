@@ -2,6 +2,7 @@
 // (wasm/api.c), one instance per file. Works in browsers, in workers and in Node; depends on
 // nothing.
 // SPDX-License-Identifier: BSD-2-Clause
+import { timeOfFrame } from "./times.js";
 
 // Members of ted4_info in units of 4 bytes (ted4.h, wasm32).
 const INFO = {
@@ -160,7 +161,8 @@ export class Scene {
     return {
       anchors: word(INFO.anchors), offsets: word(INFO.offsets), gaussians: word(INFO.gaussians),
       moving: word(INFO.moving), frames: word(INFO.frames),
-      rate: word(INFO.rateNum) / word(INFO.rateDen), level: word(INFO.level),
+      rate: word(INFO.rateNum) / word(INFO.rateDen), rateNum: word(INFO.rateNum),
+      rateDen: word(INFO.rateDen), level: word(INFO.level),
       view: VIEW[word(INFO.view)], motion: MOTION[word(INFO.motion)],
       activation: word(INFO.activation) !== 0,
       origin: [0, 1, 2].map((i) => view.getFloat32(at + 4 * (INFO.origin + i), true)),
@@ -191,10 +193,10 @@ export class Scene {
     return result;
   }
 
-  // R-HDR-005: the Gaussians of frame j.
+  // The Gaussians of frame j.
   frame(j, camera) {
-    const last = this.info.frames - 1;
-    return last === 0 ? this.gaussians(0, 1, camera) : this.gaussians(j, last, camera);
+    const { num, den } = timeOfFrame(j, this.info);
+    return this.gaussians(num, den, camera);
   }
 
   // 1: arithmetic is strict here (class X).

@@ -29,6 +29,9 @@ export interface SceneInfo {
   frames: number;
   /** Frames per second. */
   rate: number;
+  /** The same as a fraction. */
+  rateNum: number;
+  rateDen: number;
   level: number;
   view: "none" | "colour" | "full";
   motion: "none" | "bank" | "concat" | "inr";
@@ -62,6 +65,19 @@ export interface Element {
 
 export type Vector = [number, number, number];
 type Source = WebAssembly.Module | BufferSource | Response | Promise<Response> | string | URL;
+
+/** A time of a scene, from 0 / den to den / den, for Scene.gaussians (specification, 11.1). */
+export interface Time {
+  num: number;
+  den: number;
+}
+
+/** Of a frame, from 0 to frames - 1. */
+export function timeOfFrame(j: number, info: SceneInfo): Time;
+/** Of a decimal number of seconds after the first frame; undefined if the text is none. */
+export function timeOfSeconds(text: string, info: SceneInfo): Time | undefined;
+/** Of "#t=SECONDS" or "#frame=J" (specification, 18); undefined if it says no time. */
+export function timeOfFragment(fragment: string, info: SceneInfo): Time | undefined;
 
 export class Scene {
   readonly info: SceneInfo;

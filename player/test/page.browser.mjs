@@ -222,6 +222,21 @@ test("the path of a file is followed in time, as ted4dec --path does, until the 
     assert.deepEqual(along.errors, []);
   });
 
+test("the page begins at the time in its address, and goes where that changes", async () => {
+  const begun = await browser.page(CAMERA.width, CAMERA.height);
+  await begun.open(`${server.origin}/?file=${basename(SCENE)}#frame=3`);
+  await begun.until("globalThis.ted4Player?.isSettled");
+  assert.equal(await begun.evaluate(POSITION), 3);
+  const { rateNum, rateDen } = await begun.evaluate("ted4Player.file.info");
+  await begun.evaluate(`location.hash = "t=0.123"; 0`);
+  await begun.until(`Math.abs(${POSITION} - 0.123 * ${rateNum / rateDen}) < 1e-9`);
+  await begun.until("ted4Player.isSettled");
+  await begun.evaluate(`location.hash = "elsewhere"; 0`);
+  await begun.evaluate("new Promise((resolve) => { setTimeout(resolve, 50); })");
+  assert.ok(Math.abs(await begun.evaluate(POSITION) - 0.123 * rateNum / rateDen) < 1e-9);
+  assert.deepEqual(begun.errors, []);
+});
+
 test("a broken file is refused with identifier and offset", async () => {
   const bytes = readFileSync(SCENE);
   bytes[bytes.length - 40] ^= 1;

@@ -127,6 +127,23 @@ test("queries of whole frames are exact, and a single frame has time 0", () => {
   assert.deepEqual(clock.query, { num: 0, den: 1 });
 });
 
+test("the time of a query is exact until another one is sought", () => {
+  const clock = new Clock();
+  clock.reset(10, 5);
+  clock.seekTo({ num: 1, den: 7 });
+  assert.deepEqual([clock.query, clock.position], [{ num: 1, den: 7 }, 9 / 7]);
+  clock.seekTo({ num: 0, den: 0 });
+  assert.deepEqual(clock.query, { num: 1, den: 7 });
+  assert.equal(played(clock, 0), 9 / 7);
+  assert.deepEqual(clock.query, { num: 5, den: 36 });
+  clock.seekTo({ num: 1, den: 7 });
+  clock.seek(9);
+  assert.deepEqual(clock.query, { num: 1, den: 1 });
+  clock.seekTo({ num: 1, den: 7 });
+  clock.reset(10, 5);
+  assert.deepEqual(clock.query, { num: 0, den: 1 });
+});
+
 function near(actual, expected) {
   actual.forEach((v, i) => assert.ok(Math.abs(v - expected[i]) < 1e-9, `${actual}`));
 }

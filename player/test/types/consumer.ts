@@ -1,8 +1,8 @@
-// consumer.ts - a program in TypeScript that uses every function of the adapters; types.mjs has it
-// compiled. SPDX-License-Identifier: BSD-2-Clause
+// consumer.ts - a program in TypeScript that uses every function of the adapters, and times;
+// types.mjs has it compiled. SPDX-License-Identifier: BSD-2-Clause
 import { SplatMesh, type PackedSplats } from "@sparkjsdev/spark";
 import type { GraphicsDevice, GSplatContainer, GSplatData, Quat } from "playcanvas";
-import { Decoder, Ted4Client, type Gaussians, type Vector } from "ted4";
+import { Decoder, Ted4Client, timeOfFragment, type Gaussians, type Vector } from "ted4";
 import { drawAsAnnexI } from "ted4/adapters/playcanvas-kernel.js";
 import { createContainer, updateContainer } from "ted4/adapters/playcanvas.js";
 import { createPackedSplats, updatePackedSplats } from "ted4/adapters/spark.js";
@@ -13,7 +13,8 @@ const eye: Vector = [0, 0, -4];
 export async function useAll(device: GraphicsDevice, bytes: Uint8Array): Promise<Quat> {
   const decoder = await Decoder.load("ted4.wasm");
   const scene = decoder.open(bytes);
-  const gaussians: Gaussians = scene.frame(0, eye);
+  const { num, den } = timeOfFragment("#t=1.5", scene.info) ?? { num: 0, den: 1 };
+  const gaussians: Gaussians = scene.gaussians(num, den, eye);
   drawAsAnnexI(device);
   const container: GSplatContainer = createContainer(device, gaussians.n);
   updateContainer(container, gaussians);
