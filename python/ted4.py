@@ -11,10 +11,12 @@
 import ctypes as c
 import os
 from dataclasses import dataclass
+from fractions import Fraction
 
 import numpy as np
 
 _u32, _f32 = c.c_uint32, c.c_float
+_DEN_END = 1 << 24  # of the denominators of queries
 MOTION = ("none", "bank", "concat", "inr")
 VIEW = ("none", "colour", "full")
 
@@ -154,7 +156,10 @@ class Scene:
         """The Gaussians of a frame, from 0 to frames - 1 (R-HDR-005)."""
         if not 0 <= number < self.frames:
             raise IndexError(f"frame {number} of {self.frames}")
-        return self.gaussians(number, max(self.frames - 1, 1), camera)
+        time = Fraction(number, max(self.frames - 1, 1))
+        if time.denominator >= _DEN_END:
+            return self.gaussians(round(time * (_DEN_END - 1)), _DEN_END - 1, camera)
+        return self.gaussians(time.numerator, time.denominator, camera)
 
     def __del__(self):
         if getattr(self, "_recon", None):
