@@ -3,6 +3,7 @@ SPDX-License-Identifier: BSD-2-Clause"""
 import os
 
 from . import apart
+from . import stability_beside as beside
 from . import stability_tables as tables
 from .bars import DELIVERED, Bars, First
 from .earlier import earlier
@@ -65,7 +66,9 @@ def write(runs, charts, results, _):
     tables.quality_section(lab)
     tables.failure_section(lab)
     tables.out_section(lab)
-    tables.points_section(lab)
+    beside.points_section(lab)
+    beside.parts_section(lab)
+    beside.twins_section(lab)
     tables.numbers_section(lab)
     apart.section(lab.page, runs, results)
     tables.strip_section(lab)

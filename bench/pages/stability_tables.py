@@ -65,30 +65,6 @@ def term_cell(cell, column):
     return f"{run.number(column):.3g} ({run.text(column + '_term')})"
 
 
-def points_section(lab):
-    """Scenes SCENE_sfm, of the group sfm, beside SCENE."""
-    page, runs = lab.page, lab.runs
-    wanted = [scene for scene in runs.scenes if runs.wants(scene, "whole", "sfm")]
-    if not wanted:
-        return
-    page.heading("Initial points as structure from motion gives them")
-    page.prose("""The initial points of the lab's scenes lie on true surfaces, of moving things too,
-        at all times, with true colours. Here the same scenes begin with a quarter as many points
-        (`--points sfm`): on what never moves only, less exact in depth, and with the tint of the
-        camera that sees them. The table shows PSNR in dB of the whole method: mean of all held-out
-        pictures / worst of all, as means over seeds.""")
-    page.table("scene", "on surfaces", "as structure from motion", "difference of the mean")
-    for scene in wanted:
-        twin = lab.cell(scene.removesuffix("_sfm"), "whole")
-        cell = lab.cell(scene, "whole")
-        if twin.mean("psnr") is None or cell.mean("psnr") is None:
-            page.row_missing(twin.scene)
-            continue
-        page.row(twin.scene, *(fixed(one.mean("psnr"), 2) + " / " + fixed(one.mean("worst"), 2)
-                               + mark(one.wanted) for one in (twin, cell)),
-                 signed(cell.mean("psnr") - twin.mean("psnr"), 2))
-
-
 def numbers_section(lab):
     page = lab.page
     page.heading("What the whole method's runs measured")

@@ -1,0 +1,85 @@
+"""Tables of what the stability lab trains beside its scenes and variants: other initial points,
+single parts left out, other cameras.
+SPDX-License-Identifier: BSD-2-Clause"""
+from .rows import mark
+from .stability_tables import quality_cell
+from .words import fixed, signed
+
+
+def points_section(lab):
+    """Scenes SCENE_sfm, of the group sfm, beside SCENE."""
+    page, runs = lab.page, lab.runs
+    wanted = [scene for scene in runs.scenes if runs.wants(scene, "whole", "sfm")]
+    if not wanted:
+        return
+    page.heading("Initial points as structure from motion gives them")
+    page.prose("""The initial points of the lab's scenes lie on true surfaces, of moving things too,
+        at all times, with true colours. Here the same scenes begin with a quarter as many points
+        (`--points sfm`): on what never moves only, less exact in depth, and with the tint of the
+        camera that sees them. The table shows PSNR in dB of the whole method: mean of all held-out
+        pictures / worst of all, as means over seeds.""")
+    page.table("scene", "on surfaces", "as structure from motion", "difference of the mean")
+    for scene in wanted:
+        twin = lab.cell(scene.removesuffix("_sfm"), "whole")
+        cell = lab.cell(scene, "whole")
+        if twin.mean("psnr") is None or cell.mean("psnr") is None:
+            page.row_missing(twin.scene)
+            continue
+        page.row(twin.scene, *(fixed(one.mean("psnr"), 2) + " / " + fixed(one.mean("worst"), 2)
+                               + mark(one.wanted) for one in (twin, cell)),
+                 signed(cell.mean("psnr") - twin.mean("psnr"), 2))
+
+
+def paired(cell, twin):
+    """The runs of two cells that have the same seed: [(one, other)]."""
+    theirs = {run.tag.rsplit("-", 1)[1]: run for run in twin.there}
+    return [(run, theirs[seed]) for run in cell.there
+            if (seed := run.tag.rsplit("-", 1)[1]) in theirs]
+
+
+def difference_cell(cell, twin):
+    """How much better a cell is than its twin, and how much larger, over the seeds of both."""
+    pairs = paired(cell, twin)
+    if not pairs:
+        return "-"
+    psnr = sum(a.number("psnr") - b.number("psnr") for a, b in pairs) / len(pairs)
+    size = sum(a.number("bytes") / b.number("bytes") - 1 for a, b in pairs) / len(pairs)
+    return (f"{signed(psnr, 2)}; {signed(100 * size, 1, ' %')}" + mark(cell.wanted)
+            + (f" ({len(pairs)} of {len(cell.wanted)})" if len(pairs) < len(cell.wanted) else ""))
+
+
+def parts_section(lab):
+    """Variants of the group parts beside the whole method."""
+    page, runs = lab.page, lab.runs
+    variants = [variant for variant in runs.variants
+                if any(runs.wants(scene, variant, "parts") for scene in lab.scenes)]
+    if not variants:
+        return
+    page.heading("Without what was made for real captures")
+    page.prose("""Each variant lacks one part: *nodropout* the dropout of anchors, *noposes* the
+        refinement of poses, *noclosing* the closing of anchors whose motion is not worth its bits.
+        The table shows the PSNR of the whole method in dB, and by how much each variant's PSNR, in
+        dB, and bytes differ from it, as means over seeds.""")
+    page.table("scene", "whole", *variants)
+    for scene in lab.scenes:
+        whole = lab.cell(scene, "whole")
+        page.row(scene, fixed(whole.mean("psnr"), 2) + mark(whole.wanted),
+                 *(difference_cell(lab.cell(scene, variant), whole) for variant in variants))
+
+
+def twins_section(lab):
+    """Scenes of the groups colours and turns, with all their variants."""
+    page, runs = lab.page, lab.runs
+    wanted = [lab.cell(scene, variant) for scene in runs.scenes for variant in runs.variants
+              if any(runs.wants(scene, variant, group) for group in ("colours", "turns"))]
+    if not wanted:
+        return
+    page.heading("Colours, exposures, and cameras that take turns")
+    page.prose("""*dusk0* is *dusk* without drifting exposures, and *tints40* is *tints4* without
+        tints; *nocolour* trains without any correction. *tints4* is judged by held-out times of its
+        own cameras, as they are: a file has one look, so that correction makes pictures of cameras
+        that differ in colour worse ([limits](../doc/limits.md)). *relay* has cameras that take
+        turns. The table shows PSNR in dB as above.""")
+    page.table("scene", "variant", "PSNR", "bytes")
+    for cell in wanted:
+        page.row(cell.scene, cell.variant, quality_cell(cell), fixed(cell.mean("bytes"), 0))
