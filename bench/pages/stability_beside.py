@@ -31,10 +31,9 @@ def points_section(lab):
 
 
 def paired(cell, twin):
-    """The runs of two cells that have the same seed: [(one, other)]."""
-    theirs = {run.tag.rsplit("-", 1)[1]: run for run in twin.there}
-    return [(run, theirs[seed]) for run in cell.there
-            if (seed := run.tag.rsplit("-", 1)[1]) in theirs]
+    """The runs of two cells that have the same seed and ended with a file: [(one, other)]."""
+    pairs = [(run, other) for run in cell.there for other in twin.there if run.place == other.place]
+    return [pair for pair in pairs if all(run.text("status") == "fine" for run in pair)]
 
 
 def difference_cell(cell, twin):

@@ -36,11 +36,12 @@ export class Clock {
     this.sought();
   }
 
-  // To the time of a query, which is not rounded. Denominator 0: of no time, so that it stays.
+  // To the time num / den, which is not rounded to parts. Denominator 0: no time, and nothing
+  // changes.
   seekTo({ num, den }) {
     if (den !== 0) {
       this.#position = num * (this.frames - 1) / den;
-      this.#exact = { num, den };
+      this.#exact = timeOf(num, den);
     }
     this.sought();
   }

@@ -139,6 +139,8 @@ test("the time of a query is exact until another one is sought", () => {
   clock.seekTo({ num: 1, den: 7 });
   clock.seek(9);
   assert.deepEqual(clock.query, { num: 1, den: 1 });
+  clock.seekTo({ num: 2 ** 31, den: 2 ** 32 - 1 }); // larger terms than those of queries
+  assert.deepEqual(clock.query, { num: 2 ** 23, den: 2 ** 24 - 1 });
   clock.seekTo({ num: 1, den: 7 });
   clock.reset(10, 5);
   assert.deepEqual(clock.query, { num: 0, den: 1 });

@@ -151,6 +151,7 @@ calm-noactive-1,k,o,fine,33,32,0,1,900,da,0,0,0,0,0,0,1,0,0,0,0,
 calm-noactive-2,k,o,fine,33,17,0,1,900,db,0,0,0,1,0,0,0,2,0,0,0,
 calm-noactive-3,k,o,error,,,,,,,,,,,,,,,,,,anchor 5: not finite
 calm-nodropout-1,k,o,fine,32.5,31,0,1,810,ea,0,0,0,0,0,0,0,0,0,0,0,
+calm-nodropout-2,k,o,error,,,,,,,,,,,,,,,,,,no memory
 hue-whole-1,k,o,fine,29,28,0,1,700,fa,0,0,0,0,0,0,0,0,0,0,0,
 hue-nocolour-1,k,o,fine,28,27,0,1,650,fb,0,0,0,0,0,0,0,0,0,0,0,
 END
