@@ -17,6 +17,8 @@ expect set_left_out 3 \
 expect set_turned 3 'did you mean stage2?' "$enc" x -o "$out/x.ted4" --set stgae2=1
 no_hint set_far 3 'zzz: expected name=value' "$enc" x -o "$out/x.ted4" --set zzz
 no_hint set_value 3 'lambda=11: expected a number' "$enc" x -o "$out/x.ted4" --set lambda=11
+no_hint set_integer 3 'stage1=x: expected an integer from 1 to 10000000' "$enc" x -o "$out/x.ted4" \
+    --set stage1=x
 expect preset 3 'or paper; did you mean medium?' "$enc" x -o "$out/x.ted4" --preset medum
 no_hint preset_far 3 'or paper' "$enc" x -o "$out/x.ted4" --preset best
 expect long_option 3 'did you mean --checkpoint?' "$enc" x -o "$out/x.ted4" --chekpoint=c

@@ -91,7 +91,7 @@ int ted4_options_set(ted4_train_options *o, const char *text, char *why, size_t 
                         (t->kind == 'I' && value != (double)(int)value);
 
         if (bad) {
-            snprintf(why, why_size, "%s: expected %s from %g to %g", text,
+            snprintf(why, why_size, "%s: expected %s from %.8g to %.8g", text,
                      t->kind == 'I' ? "an integer" : "a number", t->lo, t->hi);
             return -1;
         }
