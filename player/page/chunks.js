@@ -4,6 +4,7 @@
 
 const HEADER = 12, FRAME = 20; // bytes of the file header; of a chunk without its payload
 const CAMS_HEAD = 20, CAMERA = 80, MAX_CAMERAS = 65536, MAX_SIDE = 16384;
+const DEN_END = 2 ** 24; // R-REC-002
 const TOLERANCE = 0.001;
 
 // [{ type, payload }] in the order of the file.
@@ -64,7 +65,7 @@ function isRotation(R) {
 function isCamera({ width, height, fx, fy, cx, cy, R, t, num, den }) {
   const isSide = (n) => n >= 1 && n <= MAX_SIDE;
   return isSide(width) && isSide(height) && fx > 0 && fy > 0 &&
-    [fx, fy, cx, cy, ...t].every(Number.isFinite) && isRotation(R) && (den === 0 || num <= den);
+    [fx, fy, cx, cy, ...t].every(Number.isFinite) && isRotation(R) && num <= den && den < DEN_END;
 }
 
 // A chunk CAMS, or null where it breaks R-EXT-008 and is to be ignored.
@@ -80,13 +81,14 @@ function readCams(payload) {
   return cameras.every(isCamera) ? { up, kind, cameras } : null;
 }
 
-// { up, cameras, path }: up is null if it is unknown; of each kind the last chunk counts.
+// { up, cameras, path }: up is null if it is unknown; of each kind the last chunk that has cameras
+// counts.
 export function camerasOf(chunks) {
   const found = { up: null, cameras: [], path: [] };
   for (const { type, payload } of chunks) {
     const cams = type === "CAMS" ? readCams(payload) : null;
     if (cams === null) continue;
-    found[cams.kind === 0 ? "cameras" : "path"] = cams.cameras;
+    if (cams.cameras.length > 0) found[cams.kind === 0 ? "cameras" : "path"] = cams.cameras;
     if (Math.hypot(...cams.up) > 0) found.up = cams.up;
   }
   return found;

@@ -36,12 +36,12 @@ export class Clock {
     this.sought();
   }
 
-  // To the time num / den, which is not rounded to parts. Denominator 0: no time, and nothing
+  // To the time of a query, which is not rounded to parts. Denominator 0: no time, and nothing
   // changes.
   seekTo({ num, den }) {
     if (den !== 0) {
       this.#position = num * (this.frames - 1) / den;
-      this.#exact = timeOf(num, den);
+      this.#exact = { num, den };
     }
     this.sought();
   }
@@ -78,7 +78,7 @@ export class Clock {
     }
   }
 
-  // Of spec 11.1; whole frames are exact.
+  // A query (spec 11); whole frames are exact.
   get query() {
     return this.#exact ?? timeOf(Math.round(PARTS * this.position), PARTS * (this.frames - 1));
   }

@@ -66,7 +66,7 @@ export interface Element {
 export type Vector = [number, number, number];
 type Source = WebAssembly.Module | BufferSource | Response | Promise<Response> | string | URL;
 
-/** A time of a scene, from 0 / den to den / den, for Scene.gaussians (specification, 11.1). */
+/** A time of a scene, from 0 / den to den / den, for Scene.gaussians (specification, R-REC-002). */
 export interface Time {
   num: number;
   den: number;

@@ -1,4 +1,4 @@
-// times.js - times as queries: { num, den } of spec 11.1, from fractions, frames, seconds, and the
+// times.js - times as queries: { num, den } of R-REC-002, from fractions, frames, seconds, and the
 // fragment of an address (18). All is exact.
 // SPDX-License-Identifier: BSD-2-Clause
 

@@ -21,7 +21,7 @@ void ted4_integer_model_init(ted4_integer_model *m);
 /* Returns the length of an integer above -2^31. */
 unsigned ted4_integer_length(int32_t x);
 /* Codes x, which is not -2^31: its length, its sign, and the bits below the leading one, of which
- * only the first is adaptive. expected: a length, the closer the better. At most 37 symbols.
+ * only the first is adaptive. expected: a length, the closer the better. At most 36 symbols.
  * Returns the coded integer. */
 int32_t ted4_code_integer(ted4_coder *c, ted4_integer_model *m, unsigned expected, int32_t x);
 

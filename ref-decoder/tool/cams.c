@@ -11,7 +11,7 @@
 /* R-EXT-008: how far the length of up may be from 1. */
 #define UP_TOLERANCE 1e-3
 
-enum { KIND_AT = 12, COUNT_AT = 16 };
+enum { KIND_AT = 12, COUNT_AT = 16, DEN_END = 1 << 24 /* R-REC-002 */ };
 
 static void put_floats(uint8_t *to, const float *x, size_t n)
 {
@@ -45,7 +45,7 @@ static int camera_is_valid(const ted4_cams_camera *c)
 
     return side_is_valid(v->width) && side_is_valid(v->height) && all_finite(pinhole, 4) &&
            v->fx > 0.0f && v->fy > 0.0f && ted4_is_rotation(v->R) && all_finite(v->t, 3) &&
-           c->time.num <= c->time.den;
+           c->time.num <= c->time.den && c->time.den < DEN_END;
 }
 
 static int up_is_valid(const float up[3])

@@ -103,7 +103,8 @@ int ted4_seconds_parse(const char *text, ted4_seconds *s)
     return p[0] == 's' && p[1] == '\0' ? 0 : -1;
 }
 
-static uint64_t divisor64(uint64_t a, uint64_t b)
+/* Returns the greatest common divisor; a >= 1. */
+static uint64_t divisor(uint64_t a, uint64_t b)
 {
     while (b != 0) {
         const uint64_t rest = a % b;
@@ -114,101 +115,74 @@ static uint64_t divisor64(uint64_t a, uint64_t b)
     return a;
 }
 
-/* Returns rne(num most / den) for num < den < 2^62 and most < 2^24, by long multiplication and
- * division. */
-static uint32_t scaled(uint64_t num, uint64_t den, uint32_t most)
+static void cancel(uint64_t *a, uint64_t *b)
 {
-    uint64_t quotient = 0, rest = 0;
+    const uint64_t common = divisor(*a, *b);
 
-    for (int bit = 23; bit >= 0; bit--) {
-        quotient *= 2;
-        rest *= 2;
-        if (rest >= den) {
-            rest -= den;
-            quotient++;
-        }
-        if ((most >> bit & 1) != 0) {
-            rest += num;
-            if (rest >= den) {
-                rest -= den;
-                quotient++;
-            }
-        }
-    }
-    return (uint32_t)(quotient + (2 * rest > den || (2 * rest == den && quotient % 2 == 1)));
+    *a /= common;
+    *b /= common;
 }
 
-/* Multiplies two numbers, both divided by powers of 2 where the product needs more than 62 bits.
- * *shift grows by the number of bits lost. */
-static uint64_t product(uint64_t a, uint64_t b, int *shift)
-{
-    const uint64_t most = (uint64_t)1 << 62;
+/* An integer of 128 bits. */
+typedef struct {
+    uint64_t high, low;
+} wide;
 
-    while (b != 0 && a > most / b) {
-        if (a > b)
-            a /= 2;
-        else
-            b /= 2;
-        ++*shift;
-    }
-    return a * b;
+/* Returns a b, which must have at most 128 bits. */
+static wide product(wide a, uint32_t b)
+{
+    const uint64_t first = (a.low & UINT32_MAX) * b, second = (a.low >> 32) * b + (first >> 32);
+
+    return (wide) { a.high * b + (second >> 32), second << 32 | (first & UINT32_MAX) };
+}
+
+static int is_above(wide a, wide b)
+{
+    return a.high != b.high ? a.high > b.high : a.low > b.low;
+}
+
+/* R-HDR-005: returns the query of the time num / den, whose terms are the lowest if den is at
+ * least 2^24; num <= den < 2^96. */
+static ted4_time query(wide num, wide den)
+{
+    const uint32_t most = DENOMINATORS - 1;
+    const wide twice = product(num, 2 * most); /* 2 most num is compared with (2 n + 1) den */
+    uint32_t n = 0;                            /* floor(most num / den) */
+
+    if (den.high == 0 && den.low <= most)
+        return (ted4_time) { (uint32_t)num.low, (uint32_t)den.low };
+    for (uint32_t bit = DENOMINATORS / 2; bit > 0; bit /= 2)
+        if (!is_above(product(den, 2 * (n + bit)), twice))
+            n += bit;
+
+    const wide half = product(den, 2 * n + 1);
+    const int above = is_above(twice, half), below = is_above(half, twice);
+
+    return (ted4_time) { n + (uint32_t)(above || (!below && n % 2 == 1)), most };
 }
 
 ted4_time ted4_time_of_seconds(ted4_seconds s, uint32_t n_frames, uint32_t rate_num,
                                uint32_t rate_den)
 {
-    const uint32_t last = n_frames - 1, most = DENOMINATORS - 1;
-    uint64_t a = s.num, b = s.den, c = rate_num, d = rate_den, common;
-    int up = 0, down = 0;
+    uint64_t up[2] = { s.num, rate_num }, down[3] = { s.den, rate_den, n_frames - 1 };
 
-    if (last == 0 || s.num == 0)
+    if (n_frames == 1 || s.num == 0)
         return (ted4_time) { 0, 1 };
-    common = divisor64(a, d);
-    a /= common;
-    d /= common;
-    common = divisor64(c, b);
-    c /= common;
-    b /= common;
-    uint64_t num = product(a, c, &up), den = product(product(b, d, &down), last, &down);
+    for (int i = 0; i < 2; i++)
+        for (int j = 0; j < 3; j++)
+            cancel(&up[i], &down[j]);
 
-    for (; up > down; down++)
-        den /= 2;
-    for (; down > up; up++)
-        num /= 2;
-    if (num >= den)
-        return (ted4_time) { 1, 1 };
-    common = divisor64(den, num);
-    num /= common;
-    den /= common;
-    return den < DENOMINATORS ? (ted4_time) { (uint32_t)num, (uint32_t)den }
-                              : (ted4_time) { scaled(num, den, most), most };
-}
+    const wide num = product((wide) { 0, up[0] }, (uint32_t)up[1]);
+    const wide den = product((wide) { 0, down[0] * down[1] }, (uint32_t)down[2]);
 
-/* Returns the greatest common divisor; a >= 1. */
-static uint32_t divisor(uint32_t a, uint32_t b)
-{
-    while (b != 0) {
-        const uint32_t rest = a % b;
-
-        a = b;
-        b = rest;
-    }
-    return a;
-}
-
-/* Returns rne(a / b), which fits in 32 bits. */
-static uint32_t nearest(uint64_t a, uint32_t b)
-{
-    const uint64_t whole = a / b, twice = a % b * 2;
-
-    return (uint32_t)(whole + (twice > b || (twice == b && whole % 2 == 1)));
+    return is_above(den, num) ? query(num, den) : (ted4_time) { 1, 1 };
 }
 
 ted4_time ted4_time_of_frame(uint32_t frame, uint32_t n_frames)
 {
-    const uint32_t last = n_frames > 1 ? n_frames - 1 : 1, most = DENOMINATORS - 1;
-    const uint32_t common = last < DENOMINATORS ? 1 : divisor(last, frame);
-    const ted4_time t = { frame / common, last / common };
+    uint64_t num = frame, den = n_frames > 1 ? n_frames - 1 : 1;
 
-    return t.den < DENOMINATORS ? t : (ted4_time) { nearest((uint64_t)t.num * most, t.den), most };
+    if (den >= DENOMINATORS)
+        cancel(&den, &num);
+    return query((wide) { 0, num }, (wide) { 0, den });
 }

@@ -35,9 +35,7 @@ typedef struct {
 int ted4_seconds_parse(const char *text, ted4_seconds *s);
 
 /* R-MED-001: returns the time of a scene of n_frames at rate_num / rate_den frames per second, all
- * at least 1, that lies s after its first frame; the first or last frame's where there is none.
- * Exact, as a fraction, unless its terms need more than 62 bits: then they are rounded to so many.
- */
+ * at least 1, that lies s after its first frame; the first or last frame's where there is none. */
 ted4_time ted4_time_of_seconds(ted4_seconds s, uint32_t n_frames, uint32_t rate_num,
                                uint32_t rate_den);
 

@@ -7,10 +7,12 @@
 #include <xxhash.h>
 
 #include "base/bytes.h"
+#include "norm/syntax.h"
 #include "ted4.h"
 #include "write/buffer.h"
 
-enum { MINOR_AT = 9, LEVEL_AT = 11, META_FLAGS = TED4_CHUNK_IS_SAFE };
+enum { MINOR_AT = 9, PROFILE_AT = 10, LEVEL_AT = 11, COMPACT_MINOR = 2 };
+enum { META_FLAGS = TED4_CHUNK_IS_SAFE };
 
 int ted4_edit_begin(ted4_edit *e, const uint8_t *file, size_t size)
 {
@@ -220,13 +222,15 @@ static int is_of_minor_1(const char *type)
 static int minor_version(const ted4_edit *e)
 {
     const int found = e->file[MINOR_AT];
-    int needed = 0;
+    int described = 0;
 
     for (size_t i = 0; i < e->n; i++)
-        needed |= !e->chunk[i].dropped && is_of_minor_1(e->chunk[i].view.type);
+        described |= !e->chunk[i].dropped && is_of_minor_1(e->chunk[i].view.type);
     for (size_t i = 0; i < e->n_added; i++)
-        needed |= is_of_minor_1(e->added[i].type);
-    return found > 1 ? found : needed;
+        described |= is_of_minor_1(e->added[i].type);
+    if (found > COMPACT_MINOR)
+        return found;
+    return e->file[PROFILE_AT] == TED4_PROFILE_COMPACT ? COMPACT_MINOR : described;
 }
 
 int ted4_edit_write(const ted4_edit *e, uint8_t **out, size_t *size, const char **why)

@@ -7,6 +7,7 @@
 
 #include "edit.h"
 #include "norm/half.h"
+#include "write/coded.h"
 #include "write/encode.h"
 #include "write/snap.h"
 
@@ -85,6 +86,16 @@ static int add_chunks(ted4_edit *e, const uint8_t *file, size_t size, size_t *dr
     return 0;
 }
 
+/* R-ENC-006: chooses the smallest mode of a blob; deflated bytes that stay are copied (R-EDT-003).
+ */
+static void choose_mode(ted4_scene *s, ted4_blob *b)
+{
+    if (b->mode != TED4_BLOB_DEFLATED)
+        b->mode = TED4_BLOB_AUTO;
+    else if (s->profile == TED4_PROFILE_COMPACT)
+        (void)ted4_blob_code(s, b, &s->arena, b->deflated_size);
+}
+
 /* Writes the critical chunks. Returns NULL or what is wrong. */
 static const char *write_scene(ted4_scene *s, int profile, const ted4_parallel *p, uint8_t **out,
                                size_t *size, int *sorted)
@@ -96,7 +107,9 @@ static const char *write_scene(ted4_scene *s, int profile, const ted4_parallel *
         return "out of memory";
     s->profile = (uint8_t)profile;
     s->grid = 0;
-    s->nete.mode = s->netr.mode = s->bank.mode = TED4_BLOB_AUTO;
+    choose_mode(s, &s->nete);
+    choose_mode(s, &s->netr);
+    choose_mode(s, &s->bank);
     return ted4_encode(s, 0, p, out, size, &e) == TED4_OK ? NULL : ted4_status_text(e.code);
 }
 

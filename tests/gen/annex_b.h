@@ -30,6 +30,14 @@ static inline void annex_b_hex(FILE *out, const uint8_t *p, size_t n)
         fprintf(out, "%s%02x", i > 0 ? " " : "", p[i]);
 }
 
+/* What the value of a substream counts: entries of what it codes. */
+static inline const char *annex_b_unit(const char *name)
+{
+    return strcmp(name, "tree_substream") == 0      ? "anchors"
+           : strcmp(name, "weights_substream") == 0 ? "values"
+                                                    : "symbols";
+}
+
 /* What a value means, for people. */
 static inline void annex_b_note(const annex_b_dissection *d, char note[ANNEX_B_NOTE])
 {
@@ -45,7 +53,7 @@ static inline void annex_b_note(const annex_b_dissection *d, char note[ANNEX_B_N
     if (strcmp(d->name, "chunk_type") == 0)
         snprintf(note, ANNEX_B_NOTE, "%.4s", (const char *)d->data + d->at);
     if (strstr(d->name, "_substream") != NULL)
-        snprintf(note, ANNEX_B_NOTE, "%d symbols", (int)d->value);
+        snprintf(note, ANNEX_B_NOTE, "%d %s", (int)d->value, annex_b_unit(d->name));
     if (strcmp(d->name, "magic") == 0 || strcmp(d->name, "ends_hash") == 0)
         snprintf(note, ANNEX_B_NOTE, "all of them");
     if (d->index < 0)

@@ -178,8 +178,8 @@ static inline void annex_h_symbols(FILE *out)
             h.feature_dim);
     fprintf(out, "| bits g of a place, Compact | 6 | 12, or %d | R-POS-004 |\n", TED4_OCTREE_DEPTH);
     fprintf(out,
-            "| adaptive bits of a substream, Compact | 1 | 8 g (N + 1) (POSN), 37 n (blobs) | 9.5, "
-            "9.6 |\n");
+            "| adaptive bits of a substream, Compact | 7 g (POSN), 5 (blobs) | 8 g (N + 1) (POSN), "
+            "36 n (blobs) | 9.5, 9.6 |\n");
     fprintf(out,
             "| adaptive probability p | %d | 2^16 - %d | 9.5 |\n| bits seen | 0 | %d | 9.5 |\n",
             TED4_ADAPTIVE_LEAST, TED4_ADAPTIVE_LEAST, TED4_ADAPTIVE_MEMORY);

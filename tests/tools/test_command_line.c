@@ -147,6 +147,7 @@ static void test_seconds(void **state)
     expect_second("0.1234567s", 2, 1, 1, 1234567, 10000000);
     expect_second("0.1234567s", 4, 1, 1, 690420, 16777215); /* 690419.87 */
     /* Terms of more than 64 bits. */
+    expect_second("3.0078125s", 16777214, 16777213, 130003, 385, 16640384);
     expect_second("0.5s", UINT32_MAX, UINT32_MAX - 2, 1, 8388607, 16777215); /* 8388607.50 */
     expect_second("999999.9999999s", UINT32_MAX, 1, 4294967291u, 0, 16777215);
     expect_second("999999.9999999s", UINT32_MAX, 4294967291u, 1000001, 16777198, 16777215);

@@ -13,14 +13,21 @@
 enum { MINOR_AT = 9, LEVEL_AT = 11 };
 
 /* A file without ancillary chunks. */
-static uint8_t *plain_file(size_t *size)
+static uint8_t *plain_file_of(uint8_t profile, size_t *size)
 {
     ted4_header h = random_small_header(200);
     ted4_scene *s = useful(7, &h);
-    uint8_t *file = encoded(s, 0, size);
+    uint8_t *file;
 
+    s->profile = profile;
+    file = encoded(s, 0, size);
     ted4_scene_free(s);
     return file;
+}
+
+static uint8_t *plain_file(size_t *size)
+{
+    return plain_file_of(TED4_PROFILE_MAIN, size);
 }
 
 static uint8_t *copied(const void *data, size_t size)
@@ -173,7 +180,7 @@ static void cameras_are_added_and_stripped(void **state)
 }
 
 /* R-EXT-004: unknown chunks stay as they are, critical ones cannot be dropped, and a minor version
- * above 1 is kept. */
+ * above 2 is kept. */
 static void unknown_chunks_and_versions_stay(void **state)
 {
     static const char text[] = "anything";
@@ -195,6 +202,28 @@ static void unknown_chunks_and_versions_stay(void **state)
     free(plain);
     free(with);
     free(again);
+}
+
+/* R-CON-007: an editor of this version knows 2, and keeps it for profile Compact only. */
+static void minor_of_the_profile(void **state)
+{
+    static const struct {
+        uint8_t profile, before, after;
+    } of[] = { { TED4_PROFILE_MAIN, 2, 0 },
+               { TED4_PROFILE_COMPACT, 2, 2 },
+               { TED4_PROFILE_COMPACT, 0, 2 } };
+
+    (void)state;
+    for (size_t i = 0; i < sizeof of / sizeof *of; i++) {
+        size_t size;
+        uint8_t *file = plain_file_of(of[i].profile, &size), *again;
+
+        file[MINOR_AT] = of[i].before;
+        again = with_lines(file, &size, (const char *const[]) { "title=" }, 1);
+        assert_int_equal(again[MINOR_AT], of[i].after);
+        free(again);
+        free(file);
+    }
 }
 
 /* spec 13.1: a file that grows beyond its level gets the next one that takes it. */
@@ -282,6 +311,8 @@ static void broken_cameras_are_refused(void **state)
     expect_refused(CAMERA + 56, nan);
     expect_refused(CAMERA + 68, infinite);
     expect_refused(CAMERA + 72, 8);        /* num above den */
+    expect_refused(CAMERA + 76, 0);        /* ..., and den 0 */
+    expect_refused(CAMERA + 76, 1 << 24);  /* no query */
     ted4_store32(payload + 4, 0x3f801d7e); /* 1.0009 */
     assert_int_equal(ted4_cams_read(payload, size, &c), 0);
     assert_int_equal(ted4_cams_read(payload, size - 1, &c), -1);
@@ -318,6 +349,7 @@ int main(void)
         cmocka_unit_test(lines_are_set_replaced_and_removed),
         cmocka_unit_test(cameras_are_added_and_stripped),
         cmocka_unit_test(unknown_chunks_and_versions_stay),
+        cmocka_unit_test(minor_of_the_profile),
         cmocka_unit_test(level_is_raised_where_needed),
         cmocka_unit_test(many_chunks_are_added_in_order),
         cmocka_unit_test(broken_cameras_are_refused),

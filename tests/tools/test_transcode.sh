@@ -30,6 +30,15 @@ expect named 0 'Compact profile' "$TED4_BUILD/ted4info" "$out/c.ted4"
 "$TED4_BUILD/ted4info" --validate "$out/c.ted4" >"$out/said" 2>&1
 grep -q adv.minor "$out/said" && fail minor "$(cat "$out/said")" || ok minor
 
+# R-EDT-003: deflated bytes whose mode stays are those that the file had, and not ours.
+for f in container/CON-pack-all header/HDR-bank_dim-1-bank header/HDR-bank_dim-1-concat; do
+    f=$vectors/valid/$f.ted4
+    name=$(basename "$f" .ted4)
+    "$enc" --transcode "$f" --profile main -q -f -o "$out/m.ted4"
+    tail -c +13 "$f" >"$out/before" && tail -c +13 "$out/m.ted4" >"$out/after"
+    cmp -s "$out/before" "$out/after" && ok "copied_$name" || fail "copied_$name" "other bytes"
+done
+
 # Positions of a grid: the same Gaussians in another order.
 grid=$vectors/valid/compact/CMP-order.ted4
 expect sorted 0 'anchors are in another order' \
