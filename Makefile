@@ -142,12 +142,12 @@ JOBS = $(if $(findstring -j,$(MAKEFLAGS)),,-j$(shell nproc))
 # Lints take seconds. Prints each test program it runs and a closing line of totals.
 test: lint
 	@$(MAKE) --no-print-directory $(JOBS) test-programs
-	@TED4_BUILD=$(abspath $B) TED4_DATA=$(abspath $(TED4_DATA)) sh tests/run.sh $(TESTS)
+	@TED4_BUILD="$(abspath $B)" TED4_DATA="$(abspath $(TED4_DATA))" sh tests/run.sh $(TESTS)
 
 # Scene, training, file, decoder in a fresh process, held-out views, picture sheet: in out/demo.
 demo:
 	@$(MAKE) --no-print-directory $(JOBS) $(PROGS)
-	@TED4_BUILD=$(abspath $B) sh tools/demo.sh out/demo
+	@TED4_BUILD="$(abspath $B)" sh tools/demo.sh out/demo
 
 lint:
 	@for l in tests/lint/*.sh; do sh $$l || exit 1; done

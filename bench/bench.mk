@@ -182,7 +182,7 @@ bd-rate: all
 # in bench/machines.csv is missing or stale, and the table in bench/machines.md. Builds whose tools
 # are missing are skipped, which is said; on Debian for x86-64, deps-cross-train installs them.
 cross-train: $B/ted4scene
-	TED4_BUILD=$(abspath $B) bench/machines.sh
+	TED4_BUILD="$(abspath $B)" bench/machines.sh
 
 DEPS_CROSS_TRAIN = clang-14 libomp-14-dev gcc-aarch64-linux-gnu libc6-dev-arm64-cross
 DEPS_AARCH64 = libpng-dev:arm64 libjpeg62-turbo-dev:arm64 libjansson-dev:arm64 libxxhash-dev:arm64 \
@@ -201,7 +201,7 @@ $B/bench/count_instructions.so: bench/count_instructions.c
 	$(CC) -O2 $(WARN) -Wno-missing-prototypes -shared -fPIC $< -o $@
 bench-instructions: $B/bench/count_instructions.so $B/ted4scene $B/ted4enc
 	$(MAKE) B=$B/aarch64 CC=aarch64-linux-gnu-gcc LDFLAGS=-static $B/aarch64/ted4enc
-	TED4_BUILD=$(abspath $B) bench/instructions.sh
+	TED4_BUILD="$(abspath $B)" bench/instructions.sh
 
 .PHONY: cross-train deps-cross-train bench-instructions
 
@@ -209,7 +209,7 @@ bench-instructions: $B/bench/count_instructions.so $B/ted4scene $B/ted4enc
 # The result is kept in bench/cluster.md if nothing was skipped.
 CLUSTER_TESTS = $(addprefix $B/tests/cluster/,merges sweeps)
 test-cluster: $(PROGS) $(BENCH_FILE:%=$B/bench/%) $B/bench/to_jpeg $(CLUSTER_TESTS)
-	@TED4_BUILD=$(abspath $B) sh tests/run.sh $(CLUSTER_TESTS)
+	@TED4_BUILD="$(abspath $B)" sh tests/run.sh $(CLUSTER_TESTS)
 	@grep -q '^skipped' $(CLUSTER_TESTS:%=%.log) || \
 	    $(KEEP) bench/cluster.md sed -n 's/^result: //p' $(CLUSTER_TESTS:%=%.log)
 

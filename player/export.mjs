@@ -1,11 +1,13 @@
 // export.mjs PLAYER SCENE.ted4 OUT.html - one file that holds the player of a folder (make player)
 // and a scene, and opens from the disk without a server.
 // SPDX-License-Identifier: BSD-2-Clause
-import { readFileSync, writeFileSync } from "node:fs";
+import { readFileSync, realpathSync, writeFileSync } from "node:fs";
 import { basename, join } from "node:path";
+import { fileURLToPath } from "node:url";
 import { gzipSync } from "node:zlib";
 
 const STYLE = '<link rel="stylesheet" href="style.css">';
+const MAGIC = Buffer.from("\x89TED4\r\n\x1a", "latin1"); // spec 5.1
 const SCRIPT = '<script src="player.js"></script>';
 
 function packed(id, bytes, name = "") {
@@ -28,13 +30,20 @@ export function exportPage(player, scene, name) {
   return replaced(replaced(read("index.html").toString(), STYLE, style), SCRIPT, scripts);
 }
 
-if (process.argv[1] === new URL(import.meta.url).pathname) {
-  const [player, file, out] = process.argv.slice(2);
-  if (out === undefined) {
-    console.error("usage: node export.mjs PLAYER SCENE.ted4 OUT.html");
-    process.exit(3);
-  }
-  const scene = readFileSync(file), page = exportPage(player, scene, basename(file));
+function main([player, file, out]) {
+  if (out === undefined) throw new Error("usage: node export.mjs PLAYER SCENE.ted4 OUT.html");
+  const scene = readFileSync(file);
+  if (!scene.subarray(0, MAGIC.length).equals(MAGIC)) throw new Error(`${file}: not a TED4 file`);
+  const page = exportPage(player, scene, basename(file));
   writeFileSync(out, page);
   console.log(`${out}: ${page.length} bytes, ${page.length - scene.length} more than the scene`);
+}
+
+if (process.argv[1] && realpathSync(process.argv[1]) === fileURLToPath(import.meta.url)) {
+  try {
+    main(process.argv.slice(2));
+  } catch ({ message }) {
+    console.error(`export.mjs: ${message}`);
+    process.exitCode = 3;
+  }
 }

@@ -28,9 +28,9 @@ $W/ted4.wasm: $(WASM_OBJ)
 # Through the JavaScript interface, in Node: its tests, and the conformance suite by the driver
 # contract. WebAssembly reserves address space, so the runs of the suite have no bound on it.
 player-test: $W/ted4.wasm
-	TED4_WASM=$(abspath $W/ted4.wasm) node --test player/test/*.test.mjs
+	TED4_WASM="$(abspath $W/ted4.wasm)" node --test player/test/*.test.mjs
 player-conformance: $W/ted4.wasm $B/ted4conf
-	TED4_WASM=$(abspath $W/ted4.wasm) $B/ted4conf run --decoder 'node player/test/driver.mjs' \
+	TED4_WASM="$(abspath $W/ted4.wasm)" $B/ted4conf run --decoder 'node player/test/driver.mjs' \
 	    --memory 0 --once --timeout 60
 DEPS_PLAYER = clang-19 lld-19 nodejs $(if $(shell command -v npm),,npm)
 deps-player: deps
@@ -41,7 +41,7 @@ deps-player: deps
 # build folder. The licence of PlayCanvas comes first in player.js.
 NPM     = $W/npm
 BIN     = $(NPM)/node_modules/.bin
-ESBUILD = NODE_PATH=$(abspath $(NPM)/node_modules) $(BIN)/esbuild --bundle \
+ESBUILD = NODE_PATH="$(abspath $(NPM)/node_modules)" $(BIN)/esbuild --bundle \
           --minify --format=iife --target=es2022 --log-level=warning
 PAGE_LICENCE = $(NPM)/node_modules/playcanvas/LICENSE
 PAGE_SRC = $(wildcard player/page/*.js player/src/*.js player/adapters/*.js)
@@ -59,11 +59,11 @@ $W/worker.txt: $(PAGE_SRC) $(NPM)/installed
 	$(ESBUILD) player/src/worker.js --outfile=$@
 $W/player.js: $(PAGE_SRC) $W/worker.txt $(NPM)/installed
 	$(ESBUILD) player/page/main.js --loader:.txt=text --outfile=$@.new \
-	    --alias:worker-text=$(abspath $W/worker.txt) --log-override:empty-import-meta=silent
+	    --alias:worker-text="$(abspath $W/worker.txt)" --log-override:empty-import-meta=silent
 	{ echo '/*! PlayCanvas:'; cat $(PAGE_LICENCE); echo '*/'; cat $@.new; } >$@
 	@rm $@.new
 player-html: player
-	node player/export.mjs $W $(FILE) $(OUT)
+	node player/export.mjs $W "$(FILE)" "$(OUT)"
 .PHONY: player player-html
 
 # The page, and those of the adapters, in headless Chromium, with a small file that is trained for
@@ -76,9 +76,9 @@ $W/adapters/%.js: player/adapters/pages/%.js $(PAGE_SRC) $(wildcard player/adapt
     $(NPM)/installed
 	$(ESBUILD) $< --outfile=$@
 test-player: player $(ADAPTERS) $T/occluder.ted4 $B/ted4dec $B/ted4edit
-	TED4_PLAYER=$(abspath $W) TED4_SCENE=$(abspath $T/occluder.ted4) TED4_OUT=$(abspath $T) \
-	TED4_PROGRAMS=$(abspath $B) TED4_SPLAT_TRANSFORM=$(abspath $(BIN)/splat-transform) \
-	TED4_MODULES=$(abspath $(NPM)/node_modules) node --test --test-concurrency=1 \
+	TED4_PLAYER="$(abspath $W)" TED4_SCENE="$(abspath $T/occluder.ted4)" TED4_OUT="$(abspath $T)" \
+	TED4_PROGRAMS="$(abspath $B)" TED4_SPLAT_TRANSFORM="$(abspath $(BIN)/splat-transform)" \
+	TED4_MODULES="$(abspath $(NPM)/node_modules)" node --test --test-concurrency=1 \
 	    player/test/*.browser.mjs player/test/conversions.mjs player/test/types.mjs
 $T/occluder.ted4: | $B/ted4scene $B/ted4enc
 	@mkdir -p $T
@@ -86,8 +86,8 @@ $T/occluder.ted4: | $B/ted4scene $B/ted4enc
 	$B/ted4enc $T/scene -o $@ --preset draft --iterations 800,400 --seed 1 \
 	    --cameras -f -q
 player-speed: player $B/ted4dec
-	TED4_PLAYER=$(abspath $W) node player/test/speed.mjs $(FILE)
-	TED4_WASM=$(abspath $W/ted4.wasm) TED4_DEC=$(abspath $B/ted4dec) \
+	TED4_PLAYER="$(abspath $W)" node player/test/speed.mjs $(FILE)
+	TED4_WASM="$(abspath $W/ted4.wasm)" TED4_DEC="$(abspath $B/ted4dec)" \
 	    node player/test/decode_speed.mjs $(FILE)
 deps-test-player: deps-player
 	@$(call INSTALL_DEBIAN,chromium)

@@ -9,6 +9,7 @@
 # SPDX-License-Identifier: BSD-2-Clause
 """Decoder of TED4, compressed dynamic scenes of 3D Gaussians."""
 import ctypes as c
+import operator
 import os
 from dataclasses import dataclass
 from fractions import Fraction
@@ -105,6 +106,8 @@ class Scene:
     def __init__(self, data, max_bytes=0, max_work=0):
         """data: the bytes of a whole file. max_bytes: of memory, 0: 4 GiB; max_work: steps of spec
         13.4, 0: any. Raises Ted4Error."""
+        if not (0 <= max_bytes < 1 << 64 and 0 <= max_work < 1 << 64):
+            raise ValueError("max_bytes and max_work are from 0 to 2^64 - 1")
         self._scene, self._recon = c.c_void_p(), c.c_void_p()
         self._options = _Options(max_bytes=max_bytes, max_work=max_work)
         error, data = _Error(), bytes(data)
@@ -129,12 +132,16 @@ class Scene:
     def gaussians(self, num, den, camera=(0.0, 0.0, 0.0)):
         """At time num / den, in [0, 1], from a camera centre in world coordinates. Raises
         Ted4Error."""
+        num, den = operator.index(num), operator.index(den)
+        if not 0 <= num <= den < _DEN_END:
+            num, den = 1, 0  # refused by the library, which a larger number may not reach as it is
+        x, y, z = camera
         if not self._recon:
             code = _library.ted4_recon_new(c.byref(self._recon), self._scene,
                                            c.byref(self._options))
             if code:
                 raise Ted4Error(code)
-        query, g = _Query(num, den, (_f32 * 3)(*camera)), _Gaussians()
+        query, g = _Query(num, den, (_f32 * 3)(x, y, z)), _Gaussians()
         code = _library.ted4_recon_query(self._recon, c.byref(query), None, c.byref(g))
         if code:
             raise Ted4Error(code)
@@ -160,6 +167,9 @@ class Scene:
         if time.denominator >= _DEN_END:
             return self.gaussians(round(time * (_DEN_END - 1)), _DEN_END - 1, camera)
         return self.gaussians(time.numerator, time.denominator, camera)
+
+    def __copy__(self):
+        raise TypeError("a Scene cannot be copied")  # it owns what the library allocated
 
     def __del__(self):
         if getattr(self, "_recon", None):

@@ -30,7 +30,7 @@ else
         name=$(basename "${v%.*}")
         [ ! -e "$work/images/$name.png" ] || die "$v: another clip is called $name, too"
         try ffmpeg -i "$v" -frames:v 1 "$work/images/$name.png"
-        ln "$v" "$out/" 2>/dev/null || cp "$v" "$out/" || die "$v: cannot be copied to $out"
+        ln -L "$v" "$out/" 2>/dev/null || cp "$v" "$out/" || die "$v: cannot be copied to $out"
     done
 fi
 n=$(ls "$work/images" | wc -l)

@@ -30,6 +30,11 @@ export class Ted4Error extends Error {
   }
 }
 
+// Can the module take it as a term of a query? What it takes, it judges (R-REC-002).
+function isTerm(n) {
+  return Number.isInteger(n) && n >= 0 && n < 2 ** 32;
+}
+
 function hex(bytes) {
   return Array.from(bytes, (b) => b.toString(16).padStart(2, "0")).join("");
 }
@@ -86,6 +91,9 @@ export class Scene {
     this.#wasm = wasm;
     this.#bytes = bytes instanceof ArrayBuffer ? new Uint8Array(bytes) : bytes;
     this.#options = { maxBytes: DEFAULT_MAX_BYTES, maxWork: 0, budget: false, ...options };
+    for (const name of ["maxBytes", "maxWork"])
+      if (!(this.#options[name] >= 0))
+        throw new RangeError(`${name}: ${this.#options[name]}, expected a number from 0`);
   }
 
   #view() {
@@ -176,7 +184,12 @@ export class Scene {
   // [x, y, z], scale: [3], rotation: [w, x, y, z], opacity, colour: [r, g, b] }, arrays of n values
   // in the module's memory, which stay as they are until the next call. Throws Ted4Error.
   gaussians(num, den, camera = [0, 0, 0]) {
-    const code = this.#wasm.ted4_wasm_query(num, den, ...camera, this.#options.maxBytes);
+    if (!isTerm(num) || !isTerm(den))
+      throw this.#error(this.#codeOf("query.range"));
+    const [x, y, z] = camera;
+    if (camera.length !== 3 || ![x, y, z].every((v) => typeof v === "number"))
+      throw new TypeError(`camera: ${camera}, expected three numbers`);
+    const code = this.#wasm.ted4_wasm_query(num, den, x, y, z, this.#options.maxBytes);
     if (code !== 0) throw this.#error(code);
     const view = this.#view();
     const at = this.#wasm.ted4_wasm_gaussians();

@@ -52,6 +52,19 @@ test("Gaussians of a frame have as many values as records, finite, with opacity 
   assert.ok(g.opacity.every((x) => x >= 0 && x <= 1));
 });
 
+test("a query that is none is refused, and never taken for another one", () => {
+  const scene = decoder.open(contents[0].bytes);
+  const last = 2 ** 24 - 1;
+  assert.ok(scene.gaussians(last, last, [0, 0, 0]).n > 0);
+  for (const [num, den] of [[0.5, 1], [2 ** 32, 5], [3, 2 ** 32 + 5], [-1, 5], [6, 5], [0, 0],
+    [1, 2 ** 24], [NaN, 1], ["0", 1]])
+    assert.throws(() => scene.gaussians(num, den), { name: "Ted4Error", id: "query.range" });
+  for (const camera of [[1, 2], [1, 2, 3, 4], ["1", 2, 3]])
+    assert.throws(() => scene.frame(0, camera), TypeError);
+  for (const options of [{ maxBytes: -1 }, { maxBytes: NaN }, { maxWork: -1 }])
+    assert.throws(() => decoder.open(contents[0].bytes, options), RangeError);
+});
+
 test("a broken file is refused with identifier and offset", () => {
   const bytes = Uint8Array.from(contents[0].bytes);
   bytes[100] ^= 1;

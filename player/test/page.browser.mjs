@@ -6,7 +6,7 @@ import { execFileSync } from "node:child_process";
 import { readFileSync, writeFileSync } from "node:fs";
 import { basename, dirname, join } from "node:path";
 import { after, before, test } from "node:test";
-import { pathToFileURL } from "node:url";
+import { fileURLToPath, pathToFileURL } from "node:url";
 import { Browser } from "./browser.mjs";
 import { CAMERA, decode, edit, keep, OUT, PLAYER, rendered, SCENE } from "./fixture.mjs";
 import { lookingAt } from "../page/camera.js";
@@ -250,7 +250,8 @@ test("a broken file is refused with identifier and offset", async () => {
 
 test("the page that holds everything opens by file:// and plays", async (t) => {
   const file = join(OUT, "scene.html");
-  execFileSync("node", [new URL("../export.mjs", import.meta.url).pathname, PLAYER, SCENE, file]);
+  const program = fileURLToPath(new URL("../export.mjs", import.meta.url));
+  execFileSync("node", [program, PLAYER, SCENE, file]);
   const overhead = readFileSync(file).length - readFileSync(SCENE).length;
   t.diagnostic(`${overhead} bytes more than the scene`);
   assert.ok(overhead <= MOST_OVERHEAD);

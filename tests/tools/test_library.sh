@@ -147,6 +147,7 @@ if [ -n "$python" ]; then
     "$TED4_BUILD/ted4dec" "$vector" -o "$out/frame_%d.raw" --keep-all -q 2>"$out/err"
     export TED4_LIBRARY=$shared PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=python
     if "$python" - "$vector" "$hash" "$out" >"$out/said" 2>&1 <<'PYTHON'
+import copy
 import sys
 import numpy as np
 import ted4
@@ -175,6 +176,22 @@ try:
     raise AssertionError("no such frame")
 except IndexError:
     pass
+# A query that is none is refused, and never taken for another one.
+for num, den in ((2**32, 5), (3, 2**32 + 5), (-1, 5), (6, 5), (0, 0), (1, 2**24)):
+    try:
+        scene.gaussians(num, den)
+        raise AssertionError((num, den))
+    except ted4.Ted4Error as e:
+        assert e.id == "query.range", str(e)
+for wrong, what in ((lambda: scene.gaussians(0.5, 1), TypeError),
+                    (lambda: scene.frame(0, (1, 2)), ValueError),
+                    (lambda: ted4.Scene.open(path, max_bytes=-1), ValueError),
+                    (lambda: copy.copy(scene), TypeError)):
+    try:
+        wrong()
+        raise AssertionError(what)
+    except what:
+        pass
 # Where times need larger denominators than queries have, they are rounded (R-HDR-005).
 scene.frames, last = 2**25 - 1, 2**24 - 1
 for j, num in ((29, 14), (11, 6), (2**25 - 2, last)):
