@@ -30,7 +30,8 @@ $W/ted4.wasm: $(WASM_OBJ)
 player-test: $W/ted4.wasm
 	TED4_WASM="$(abspath $W/ted4.wasm)" node --test player/test/*.test.mjs
 player-conformance: $W/ted4.wasm $B/ted4conf
-	TED4_WASM="$(abspath $W/ted4.wasm)" $B/ted4conf run --decoder 'node player/test/driver.mjs' \
+	TED4_WASM="$(abspath $W/ted4.wasm)" \
+	    $B/ted4conf run --decoder 'node player/test/driver.mjs' \
 	    --memory 0 --once --timeout 60
 DEPS_PLAYER = clang-19 lld-19 nodejs $(if $(shell command -v npm),,npm)
 deps-player: deps
@@ -76,8 +77,9 @@ $W/adapters/%.js: player/adapters/pages/%.js $(PAGE_SRC) $(wildcard player/adapt
     $(NPM)/installed
 	$(ESBUILD) $< --outfile=$@
 test-player: player $(ADAPTERS) $T/occluder.ted4 $B/ted4dec $B/ted4edit
-	TED4_PLAYER="$(abspath $W)" TED4_SCENE="$(abspath $T/occluder.ted4)" TED4_OUT="$(abspath $T)" \
-	TED4_PROGRAMS="$(abspath $B)" TED4_SPLAT_TRANSFORM="$(abspath $(BIN)/splat-transform)" \
+	TED4_PLAYER="$(abspath $W)" TED4_SCENE="$(abspath $T/occluder.ted4)" \
+	TED4_OUT="$(abspath $T)" TED4_PROGRAMS="$(abspath $B)" \
+	TED4_SPLAT_TRANSFORM="$(abspath $(BIN)/splat-transform)" \
 	TED4_MODULES="$(abspath $(NPM)/node_modules)" node --test --test-concurrency=1 \
 	    player/test/*.browser.mjs player/test/conversions.mjs player/test/types.mjs
 $T/occluder.ted4: | $B/ted4scene $B/ted4enc
