@@ -15,7 +15,7 @@ run() {
         --log "$out/x.jsonl" --seed 1 --preset draft $2
 }
 echo
-echo "ted4enc $(basename "$scene") --preset draft $quarter: a quarter of the preset's steps"
+echo "ted4enc $(basename "$scene") --preset draft $quarter: 35 % of the preset's steps"
 run "$scene" "$quarter"
 echo
 echo "the demo: ted4enc occluder --preset draft"

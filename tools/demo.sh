@@ -33,7 +33,7 @@ cat <<END
   training          $train s
   decoding          $decode ms
   rendering         $fps frames per second
-  truth, ours, error at five times: $out/sheet.png
+  truth, ours, error (times 5), at 4 times: $out/sheet.png
 
 END
 echo "{\"psnr\":$psnr,\"bytes\":$bytes,\"train_s\":$train,\"decode_ms\":$decode}"

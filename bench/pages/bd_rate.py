@@ -20,13 +20,13 @@ def write(runs, _charts, _results, _pages):
     page = Page()
     page.heading("Profile Compact: rate and quality", 1)
     page.prose("""`make bd-rate` writes this page from [bd_rate.csv](bd_rate.csv); the runs are
-        those of bd_rate.txt, in small trainings. "before" is the encoder without profile Compact,
-        at its own defaults of then; "compact" is profile Compact with three times the steps in
-        stage 2; "masks" is the same with `mask_weight=1`; "seed2" and "seed3" are other seeds of
-        both. PSNR is that of held-out pictures, drawn from the decoded file. Times of decoding are
-        no comparison: other work ran beside them. † marks rows that other sources made. What
-        limits the profile, what else was tried, and times of decoding side by side:
-        [compact.md](compact.md).""")
+        those of bd_rate.txt, in small trainings. "before" has what was the default before profile
+        Compact: profile Main, and masks that weigh less (`mask_weight=0.4`); "compact" is profile
+        Compact with three times the steps in stage 2; "masks" is the same with `mask_weight=1`;
+        "seed2" and "seed3" are other seeds of both. PSNR is that of held-out pictures, drawn from
+        the decoded file. Times of decoding are no comparison: other work ran beside them. † marks
+        rows that other sources made. What limits the profile, what else was tried, and times of
+        decoding side by side: [compact.md](compact.md).""")
     page.prose(f"{sum(run.has() for run in runs.all)} of {len(runs.all)} rows are there"
                + made_with(runs.all) + ".")
     page.prose(bars.summary())

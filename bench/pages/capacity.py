@@ -27,8 +27,8 @@ def write(runs, charts, results, _):
     head = Page()
     head.heading("Capacity: no more model than a scene needs", 1)
     head.prose("""`make capacity` writes this page from [capacity.csv](capacity.csv); the runs are
-        those of capacity.txt. The bars are those of the lab, by number. † marks rows that other
-        sources made.""")
+        those of capacity.txt. † marks rows that other sources made.""")
+    head.prose(runs.summary() + ".")
     head.prose(bars.summary())
     bars.show(head, "command, then `python3 -m bench.pages capacity`")
     head.say()

@@ -17,34 +17,43 @@ def base_of(variant):
     return "moremask" if variant.endswith("_moremask") else "whole"
 
 
-def curve_of(runs, scene, variant, like=None):
-    """Points (PSNR in dB, natural logarithm of bytes) in order of PSNR. like: a variant at whose
-    lambdas alone."""
-    wanted = {run.weight for run in runs.present(scene, like)} if like else None
-    points = [(run.count("psnr"), math.log(run.count("bytes")))
-              for run in runs.present(scene, variant) if wanted is None or run.weight in wanted]
+def curve_of(rows):
+    """Points (PSNR in dB, natural logarithm of bytes) in order of PSNR."""
+    points = [(run.count("psnr"), math.log(run.count("bytes"))) for run in rows]
     return sorted(points, key=lambda point: point[0])
+
+
+def base_rows(runs, run, against=None):
+    """The rows that a row may be compared with: those of its base, of the present sources if the
+    row is, otherwise of earlier ones."""
+    base = runs.present(run.scene, against or base_of(run.variant))
+    return [other for other in base if other.is_old() == run.is_old()]
+
+
+def is_mixed(rows):
+    """Did the present sources make some of these rows, and others the rest?"""
+    return len({run.is_old() for run in rows}) > 1
 
 
 def rate_change(runs, run, against=None):
     """Bytes at the same PSNR against the curve of its base, percent; None where that does not
     reach."""
-    curve = curve_of(runs, run.scene, against or base_of(run.variant))
+    curve = curve_of(base_rows(runs, run, against))
     at = curves.value_at(curve, run.count("psnr"))
     return None if at is None else curves.as_percent(math.log(run.count("bytes")) - at)
 
 
 def psnr_change(runs, run, against=None):
     """PSNR at the same bytes, dB, likewise."""
-    curve = curves.swapped(curve_of(runs, run.scene, against or base_of(run.variant)))
+    curve = curves.swapped(curve_of(base_rows(runs, run, against)))
     at = curves.value_at(curve, math.log(run.count("bytes")))
     return None if at is None else run.count("psnr") - at
 
 
 def nearest(runs, run, against=None):
     """The run of its base that is nearest in quality; None when there is none."""
-    base = runs.present(run.scene, against or base_of(run.variant))
-    return min(base, key=lambda other: abs(other.count("psnr") - run.count("psnr")), default=None)
+    return min(base_rows(runs, run, against), default=None,
+               key=lambda other: abs(other.count("psnr") - run.count("psnr")))
 
 
 def mean(values):
@@ -62,7 +71,8 @@ class Change:
     near_psnr, near_rate  mean differences to the nearest points, dB and percent
     bd_rate               BD-rate: mean rate between the two curves at the same lambdas, percent:
                           on Bjontegaard's cubics; with fewer than four points on straight lines;
-                          None with fewer than two, or where the curves share no PSNR
+                          None with fewer than two, where the curves share no PSNR, or where the
+                          present sources made only some of the rows
     is_cubic              which of the two
     worse                 than the base: True, False, or None: it cannot be said"""
 
@@ -76,10 +86,15 @@ class Change:
         self.near_psnr = mean([run.count("psnr") - other.count("psnr") for run, other in near])
         self.near_rate = curves.as_percent(mean([
             math.log(run.count("bytes") / other.count("bytes")) for run, other in near]))
-        a, b = curve_of(runs, scene, base, like=variant), curve_of(runs, scene, variant)
+        rows = runs.present(scene, variant)
+        weights = {run.weight for run in rows}
+        base_of_rows = [run for run in runs.present(scene, base) if run.weight in weights]
+        a, b = curve_of(base_of_rows), curve_of(rows)
         cubic = curves.bjontegaard(a, b)
         self.is_cubic = cubic is not None
         self.bd_rate = curves.as_percent(cubic if self.is_cubic else curves.mean_gap(a, b))
+        if is_mixed(rows + base_of_rows):
+            self.bd_rate = None
         self.worse = self.is_worse() if self.runs else None
 
     def is_worse(self):

@@ -2,7 +2,6 @@
 SPDX-License-Identifier: BSD-2-Clause"""
 import os
 
-from . import apart
 from . import stability_beside as beside
 from . import stability_tables as tables
 from .bars import DELIVERED, Bars, First
@@ -70,7 +69,6 @@ def write(runs, charts, results, _):
     beside.parts_section(lab)
     beside.twins_section(lab)
     tables.numbers_section(lab)
-    apart.section(lab.page, runs, results)
     tables.strip_section(lab)
     tables.command_section(lab)
     run_bars(lab)

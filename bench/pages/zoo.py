@@ -110,13 +110,14 @@ def write(runs, _charts, _results, _pages):
         which is friendly, in a way in which others write scenes; [zoo.txt](zoo.txt) is the table.
         The command makes the scene; then `ted4enc SCENE -o FILE.ted4 --preset draft --seed 1`
         trains it, with the options that stand behind the command. The preset is draft, because the
-        default's 60,000 steps take ten minutes per case on one core even for pictures of 96x64.""")
+        default has three and a half times as many steps.""")
     bars = Bars()
     case_bars(zoo, bars)
     back_bar(bars, zoo.lab, "the same on the scenes of the stability lab",
              "`bench/zoo.sh lab`")
     back_bar(bars, zoo.long, "the same in long trainings", "`bench/zoo.sh long`")
     foretold_bars(zoo, bars)
+    page.prose(bars.summary())
     bars.show(page, "command; then `python3 -m bench.pages zoo`")
     show_cases(zoo, page)
     show_back(page, zoo.long, "Long trainings", "These are trainings with the default preset.")

@@ -9,6 +9,7 @@ from ..seeded import Seeded
 from ..words import anchor, fixed, signed
 from . import estimate, lives, precision, singles, variant_bars
 from .held_out import cameras_text, counted, folders
+from .rate import is_monotone
 
 SCENE = "kitchen"
 
@@ -45,13 +46,10 @@ def together(report, *compared_over_seeds):
 def rate(report):
     rows = [run for scene in report.scenes for run in report.runs.of(scene, "whole")]
     whole = report.runs.of(SCENE, "whole")
-    if len(whole) < 2 or not all(run.has() for run in rows):
+    if any(is_monotone(report.runs, scene) is None for scene in report.scenes):
         return None
     first, last = whole[0], whole[-1]
-    falling = all(b.count("bytes") < a.count("bytes") and b.count("psnr") < a.count("psnr")
-                  for scene in report.scenes
-                  for a, b in zip(report.runs.of(scene, "whole"),
-                                  report.runs.of(scene, "whole")[1:]))
+    falling = all(is_monotone(report.runs, scene) for scene in report.scenes)
     return (f"One weight, λ, trades size for quality: on `{SCENE}` it leads from {kb(first)} at "
             f"{db(first)} (λ {first.weight}) to {kb(last)} at {db(last)} (λ {last.weight}). "
             + (f"On all {len(report.scenes)} scenes both fall with every step." if falling else

@@ -1,5 +1,6 @@
 """Rate and distortion of the whole method: bar 1, first half.
 SPDX-License-Identifier: BSD-2-Clause"""
+from ..compare import is_mixed
 from ..plot import Plot, panels
 from ..rows import mark
 from ..words import cells
@@ -31,9 +32,10 @@ def section(report):
 
 
 def is_monotone(runs, scene):
-    """Do bytes and PSNR fall with every step of lambda? None when a run is missing."""
+    """Do bytes and PSNR fall with every step of lambda? None when a run is missing, or the present
+    sources made only some of them."""
     whole = runs.of(scene, "whole")
-    if len(whole) < 4 or not runs.is_complete(scene, "whole"):
+    if len(whole) < 4 or not runs.is_complete(scene, "whole") or is_mixed(whole):
         return None
     return all(b.count("bytes") < a.count("bytes") and b.count("psnr") < a.count("psnr")
                for a, b in zip(whole, whole[1:]))

@@ -1,6 +1,7 @@
 """Comparisons of a few runs: medium preset, tinted cameras, scenes without motion: bars 2, 3, 4.
 SPDX-License-Identifier: BSD-2-Clause"""
 from ..bars import DELIVERED, First
+from ..compare import is_mixed
 from ..rows import mark
 from ..words import cells, fixed, signed
 from .context import sweep
@@ -63,8 +64,9 @@ def tint_section(report):
 
 
 def difference(run, other):
-    """Of PSNR, dB; None where one is missing."""
-    return run.count("psnr") - other.count("psnr") if run.has() and other.has() else None
+    """Of PSNR, dB; None where one is missing, or the present sources made only one of them."""
+    both = run.has() and other.has() and not is_mixed([run, other])
+    return run.count("psnr") - other.count("psnr") if both else None
 
 
 def still_section(report):

@@ -63,7 +63,7 @@ def explain(page):
         what the paper does not have: multi-view seeding (sprouts), seeded transients and the probe.
         Only the rows *_auto* choose their capacity; they are compared with the whole method with
         that choice, *whole_auto*, and the rows *factorised_..._moremask* with *moremask*.
-        *factorised_long* and *whole_long* are trained for all steps of preset fast, 18,000 and
+        *factorised_long* and *whole_long* are trained for 18,000 and
         10,000; the other rows are trained for a third of them.""")
 
 
