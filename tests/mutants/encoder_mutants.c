@@ -318,9 +318,9 @@ static int same_area(const conf_mutant *a, const conf_mutant *b)
 /* Prints a row per area, in the order of the list. */
 static void print_areas(const conf_mutant_list *l, conf_bytes *b)
 {
-    conf_print(b, "\n## By area\n\n| area | mutants | killed |\n|---|---|---|\n");
+    conf_print(b, "\n## By area\n\n| area | mutants | killed | not run |\n|---|---|---|---|\n");
     for (size_t i = 0; i < l->n; i++) {
-        size_t n = 0, killed = 0, before = 0;
+        size_t n = 0, killed = 0, not_run = 0, before = 0;
 
         for (size_t j = 0; j < l->n; j++) {
             if (!same_area(&l->m[i], &l->m[j]))
@@ -328,10 +328,11 @@ static void print_areas(const conf_mutant_list *l, conf_bytes *b)
             before += j < i;
             n++;
             killed += strcmp(l->m[j].verdict, "killed") == 0;
+            not_run += l->m[j].verdict[0] == '\0';
         }
         if (before == 0)
-            conf_print(b, "| %.*s | %zu | %zu |\n", (int)area_length(&l->m[i]), l->m[i].id, n,
-                       killed);
+            conf_print(b, "| %.*s | %zu | %zu | %zu |\n", (int)area_length(&l->m[i]), l->m[i].id, n,
+                       killed, not_run);
     }
 }
 
@@ -344,18 +345,19 @@ static void print_cell(const char *text, conf_bytes *b)
 
 static void print_others(const conf_mutant_list *l, conf_bytes *b)
 {
+    const size_t not_run = conf_mutant_count(l, "");
+
     conf_print(
         b, "\n## Not killed\n\n%s",
-        conf_mutant_count(l, "killed") == l->n
+        conf_mutant_count(l, "killed") + not_run == l->n
             ? "none\n"
             : "| mutant | file | result | line | becomes | why |\n|---|---|---|---|---|---|\n");
     for (size_t i = 0; i < l->n; i++) {
         const conf_mutant *const m = &l->m[i];
 
-        if (strcmp(m->verdict, "killed") == 0)
+        if (strcmp(m->verdict, "killed") == 0 || m->verdict[0] == '\0')
             continue;
-        conf_print(b, "| %s | %s | %s | `", m->id, m->file,
-                   m->verdict[0] != '\0' ? m->verdict : "not run");
+        conf_print(b, "| %s | %s | %s | `", m->id, m->file, m->verdict);
         print_cell(m->from, b);
         conf_print(b, "` | `");
         print_cell(m->to, b);
@@ -363,6 +365,10 @@ static void print_others(const conf_mutant_list *l, conf_bytes *b)
         print_cell(m->why, b);
         conf_print(b, " |\n");
     }
+    conf_print(b, "\n## Not run\n\n%s", not_run == 0 ? "none\n" : "| mutant | file |\n|---|---|\n");
+    for (size_t i = 0; i < l->n; i++)
+        if (l->m[i].verdict[0] == '\0')
+            conf_print(b, "| %s | %s |\n", l->m[i].id, l->m[i].file);
     conf_print(b, "\nFor each of the others, `mutants.csv` names the first program that killed it, "
                   "and the test\nthat failed.\n");
 }
