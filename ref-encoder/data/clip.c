@@ -173,11 +173,11 @@ static char *find_video(const char *folder, const char *name)
 }
 
 /* Gives the folder of a clip's pictures, unpacking a video if necessary. *place is owned by the
- * caller. Returns as ted4_clip_pictures. */
-static int find_place(const char *folder, const char *name, const char *video, size_t most,
-                      char **place, const ted4_dataset_options *o, ted4_message *m)
+ * caller. Returns as ted4_clips_find. */
+static int find_place(const ted4_clips *c, ted4_clip *clip, const char *video, char **place,
+                      const ted4_dataset_options *o, ted4_message *m)
 {
-    char *path = video == NULL ? NULL : ted4_path_join(folder, video);
+    char *path = video == NULL ? NULL : ted4_path_join(c->folder, video);
 
     if (path != NULL && ted4_is_folder(path)) {
         *place = path;
@@ -188,64 +188,71 @@ static int find_place(const char *folder, const char *name, const char *video, s
         path = NULL;
     }
     if (path == NULL) {
-        *place = inner_folder(folder, "images", name);
+        *place = inner_folder(c->folder, "images", clip->name);
         if (*place == NULL)
-            *place = inner_folder(folder, name, "images");
+            *place = inner_folder(c->folder, clip->name, "images");
         if (*place != NULL)
             return 1;
-        path = find_video(folder, name);
+        path = find_video(c->folder, clip->name);
     }
     if (path == NULL)
         return 0;
-    *place = ted4_video_unpack(path, most, o, m);
+    clip->is_video = 1;
+    *place = ted4_video_unpack(path, c->most, o, m);
     free(path);
     return *place == NULL ? -1 : 1;
 }
 
-int ted4_clip_pictures(ted4_name_list *pictures, const char *folder, const char *name,
-                       const char *video, size_t most, const ted4_dataset_options *o,
-                       ted4_message *m)
+int ted4_clips_find(ted4_clips *c, const ted4_clip *added, const char *video,
+                    const ted4_dataset_options *o, ted4_message *m)
 {
+    ted4_clip *list = realloc(c->list, (c->n + 1) * sizeof *list);
     char *place = NULL;
 
-    memset(pictures, 0, sizeof *pictures);
-    int result = find_place(folder, name, video, most, &place, o, m);
-    if (result == 1 && ted4_clip_list(pictures, place, 1) != 0)
-        result = ted4_say_no_memory(m);
-    keep(pictures, most);
-    if (result == 1 && pictures->n == 0)
-        result = ted4_say(m, "%s: no pictures here", place);
+    if (list == NULL)
+        return ted4_say_no_memory(m);
+    c->list = list;
+    ted4_clip *clip = &list[c->n];
+    *clip = *added;
+    int result = find_place(c, clip, video, &place, o, m);
+    if (result == 1) {
+        c->n++;
+        if (ted4_clip_list(&clip->pictures, place, 1) != 0)
+            result = ted4_say_no_memory(m);
+        else if (clip->pictures.n == 0)
+            result = ted4_say(m, "%s: no pictures here", place);
+        keep(&clip->pictures, c->most);
+    }
     free(place);
     return result;
 }
 
-int ted4_clip_add(ted4_raw_scene *s, const ted4_name_list *pictures, const char *name,
-                  const ted4_shot *model, ted4_message *m)
+int ted4_clips_give(const ted4_clips *c, ted4_raw_scene *s, ted4_message *m)
 {
-    for (size_t i = 0; i < pictures->n; i++) {
-        ted4_shot *shot = ted4_raw_scene_add(s, ted4_text_copy(pictures->names[i]), name, m);
-        if (shot == NULL)
-            return -1;
-        shot->lens = model->lens;
-        memcpy(shot->R, model->R, sizeof shot->R);
-        memcpy(shot->t, model->t, sizeof shot->t);
-        shot->is_test = model->is_test;
-        shot->time = model->time + (double)i;
-        shot->camera = ted4_text_copy(name);
-        if (shot->camera == NULL)
-            return ted4_say_no_memory(m);
-    }
+    for (const ted4_clip *clip = c->list; clip < c->list + c->n; clip++)
+        for (size_t i = 0; i < clip->pictures.n; i++) {
+            ted4_shot *shot =
+                ted4_raw_scene_add(s, ted4_text_copy(clip->pictures.names[i]), clip->name, m);
+            if (shot == NULL)
+                return -1;
+            shot->lens = clip->model.lens;
+            memcpy(shot->R, clip->model.R, sizeof shot->R);
+            memcpy(shot->t, clip->model.t, sizeof shot->t);
+            shot->is_test = clip->model.is_test;
+            shot->time = clip->model.time + clip->frame[i];
+            shot->camera = ted4_text_copy(clip->name);
+            if (shot->camera == NULL)
+                return ted4_say_no_memory(m);
+        }
     return 0;
 }
 
-int ted4_clip_lengths(ted4_raw_scene *s, size_t shortest, size_t longest, ted4_message *m)
+void ted4_clips_free(ted4_clips *c)
 {
-    if (shortest == longest)
-        return 0;
-    const int result = ted4_raw_scene_warn(
-        s,
-        "clips have from %zu to %zu frames: at the last times some cameras are missing "
-        "(--max-frames %zu leaves these times out)",
-        shortest, longest, shortest);
-    return result == 0 ? 0 : ted4_say_no_memory(m);
+    for (size_t i = 0; i < c->n; i++) {
+        ted4_name_list_free(&c->list[i].pictures);
+        free(c->list[i].frame);
+    }
+    free(c->list);
+    memset(c, 0, sizeof *c);
 }

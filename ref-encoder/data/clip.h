@@ -24,21 +24,54 @@ int ted4_clip_names(ted4_name_list *l, const char *folder);
  * 9999 precedes 10000. Returns 0, or -1 if memory runs out. */
 int ted4_clip_list(ted4_name_list *pictures, const char *folder, int by_length);
 
-/* Lists the pictures of a clip, at most most of them (0: all). The first of these that exists is
- * used: the video or folder that the scene names (video; NULL: none), images/NAME/, NAME/images/, a
- * video NAME.mp4 (.mov, .mkv, .avi, .webm, .m4v). Videos are unpacked (see video.h). Returns 1, or
- * 0 if none exists, or -1 with *m filled; *pictures is empty unless 1 is returned. */
-int ted4_clip_pictures(ted4_name_list *pictures, const char *folder, const char *name,
-                       const char *video, size_t most, const ted4_dataset_options *o,
-                       ted4_message *m);
+/* A clip of the scene. */
+typedef struct {
+    const char *name;        /* label of the camera; borrowed */
+    size_t entry;            /* index in the layout's list */
+    ted4_shot model;         /* lens, pose and is_test of its pictures; time: that of its frame 0 */
+    ted4_name_list pictures; /* in the order of time */
+    uint32_t *frame;         /* [pictures.n] the clip's frame that each picture is; owned */
+    size_t frames;           /* number of the clip's frames, also of those without a picture */
+    int is_video;
+} ted4_clip;
 
-/* Appends a shot for every picture, with the lens, pose and is_test of *model and the label name.
- * Times are model->time plus the picture's index. Returns 0, or -1 with *m filled. */
-int ted4_clip_add(ted4_raw_scene *s, const ted4_name_list *pictures, const char *name,
-                  const ted4_shot *model, ted4_message *m);
+typedef struct {
+    const char *folder; /* of the scene; borrowed */
+    size_t most;        /* the first so many frames are wanted; 0: all */
+    ted4_clip *list;    /* owned */
+    size_t n;
+    int is_counted;      /* the numbers in names count frames */
+    uint64_t base, step; /* then frame k has the number base + k step */
+    /* Pictures that would be missing if the numbers counted frames, and were no picture missing;
+     * 0: names have no such numbers. */
+    uint64_t lacking, expected;
+} ted4_clips;
 
-/* Warns if clips that should show the same times differ in length, from shortest to longest frames.
- * Returns 0, or -1 with *m filled. */
-int ted4_clip_lengths(ted4_raw_scene *s, size_t shortest, size_t longest, ted4_message *m);
+void ted4_clips_free(ted4_clips *c);
+
+/* Adds the clip *added, of which name, entry and model are given, and its pictures, at most c->most
+ * of them. The clip is the video or folder that the scene names (video), or if that is NULL, the
+ * first of these that exists: images/NAME/, NAME/images/, a video NAME.mp4 (.mov, .mkv, .avi,
+ * .webm, .m4v). Videos are unpacked (see video.h). Returns 1, or 0 if there is no clip, or -1 with
+ * *m filled. */
+int ted4_clips_find(ted4_clips *c, const ted4_clip *added, const char *video,
+                    const ted4_dataset_options *o, ted4_message *m);
+
+/* Appends a shot for every picture of all clips, in their order. Returns 0, or -1 with *m
+ * filled. */
+int ted4_clips_give(const ted4_clips *c, ted4_raw_scene *s, ted4_message *m);
+
+/* clip_times.c: finds the frames of all pictures, and leaves pictures out that are not of the first
+ * c->most frames. The last number in a picture's name, less the smallest of all clips and divided
+ * by the common step of all numbers, is its frame, so that pictures of equal numbers have equal
+ * times. Pictures are counted in their order instead if names have no numbers, or not increasing
+ * ones, or if the clips would lack half of their pictures or more; the frames of a video are always
+ * counted. Returns 0, or -1 with *m filled. */
+int ted4_clips_number(ted4_clips *c, ted4_message *m);
+
+/* clip_times.c: warns of missing pictures and of numbers that were not used; and where together is
+ * set, as all clips should end at the same time, of clips that end early. Returns 0, or -1 with *m
+ * filled. */
+int ted4_clips_say(const ted4_clips *c, int together, ted4_raw_scene *s, ted4_message *m);
 
 #endif

@@ -27,13 +27,13 @@ static const double BETWEEN = 0.1, MOST_OFFSET = 1e6;
 typedef struct {
     ted4_raw_scene *scene;
     const char *folder;
-    char *path;               /* path of cams.json; owned */
-    json_t *root;             /* owned */
-    size_t stated;            /* frames of each clip; 0 if not stated */
-    size_t shortest, longest; /* shortest and longest clip, in frames; 0: none yet */
-    int started;              /* does any camera state when its clip begins? */
-    size_t n_between;         /* cameras whose clips start between two frames */
-    double farthest;          /* largest such offset from a frame, in frames */
+    char *path;   /* path of cams.json; owned */
+    json_t *root; /* owned */
+    ted4_clips clips;
+    size_t stated;    /* frames of each clip; 0 if not stated */
+    int started;      /* does any camera state when its clip begins? */
+    size_t n_between; /* cameras whose clips start between two frames */
+    double farthest;  /* largest such offset from a frame, in frames */
     ted4_message *m;
 } calibration;
 
@@ -129,60 +129,62 @@ static int read_start(calibration *c, const json_t *o, const char *where, double
     return 0;
 }
 
-/* Refuses clips shorter than stated, which may have been truncated. */
-static int check_count(calibration *c, const char *where, size_t n)
+enum { WHERE = 700 };
+
+static void name_camera(const calibration *c, size_t i, char where[WHERE])
 {
-    c->shortest = c->shortest == 0 || n < c->shortest ? n : c->shortest;
-    c->longest = n > c->longest ? n : c->longest;
-    return n >= c->stated ? 0
-                          : ted4_say(c->m,
-                                     "%s: %zu frames, expected %zu by the file's frames "
-                                     "(--max-frames reads the first ones)",
-                                     where, n, c->stated);
+    snprintf(where, WHERE, "%.600s: cameras[%zu]", c->path, i);
 }
 
-static int add_clip(calibration *c, const char *where, const char *name, const char *video,
-                    const ted4_shot *model)
+/* Refuses clips that have fewer pictures than stated, which may have been truncated. */
+static int check_counts(const calibration *c)
 {
-    ted4_name_list pictures;
+    char where[WHERE];
+
+    for (const ted4_clip *clip = c->clips.list; clip < c->clips.list + c->clips.n; clip++) {
+        name_camera(c, clip->entry, where);
+        if (clip->pictures.n < c->stated)
+            return ted4_say(c->m,
+                            "%s: %zu frames, expected %zu by the file's frames "
+                            "(--max-frames reads the first ones)",
+                            where, clip->pictures.n, c->stated);
+    }
+    return 0;
+}
+
+static int find_clip(calibration *c, const char *where, const ted4_clip *clip, const char *video)
+{
     char text[400];
 
     c->scene->n_entries++;
-    const int found = ted4_clip_pictures(&pictures, c->folder, name, video,
-                                         c->stated > 0 ? c->stated : c->scene->wanted->max_frames,
-                                         c->scene->wanted, c->m);
+    const int found = ted4_clips_find(&c->clips, clip, video, c->scene->wanted, c->m);
     if (found == 0) {
         snprintf(text, sizeof text,
                  "%.150s: no such video, nor a folder images/%.60s or %.60s/images of its pictures",
-                 video != NULL ? video : name, name, name);
+                 video != NULL ? video : clip->name, clip->name, clip->name);
         ted4_raw_scene_missing(c->scene, where, text);
     }
-    if (found <= 0)
-        return found;
-    int result = check_count(c, where, pictures.n);
-    if (result == 0)
-        result = ted4_clip_add(c->scene, &pictures, name, model, c->m);
-    ted4_name_list_free(&pictures);
-    return result;
+    return found < 0 ? -1 : 0;
 }
 
 static int read_camera(calibration *c, size_t i)
 {
     const json_t *o = json_array_get(json_object_get(c->root, "cameras"), i);
-    const char *name = NULL, *video = NULL;
-    char where[700];
-    ted4_shot model;
+    const char *video = NULL;
+    char where[WHERE];
+    ted4_clip clip;
 
-    memset(&model, 0, sizeof model);
-    snprintf(where, sizeof where, "%.600s: cameras[%zu]", c->path, i);
-    const int found = ted4_json_text(o, where, "name", &name, c->m);
+    memset(&clip, 0, sizeof clip);
+    clip.entry = i;
+    name_camera(c, i, where);
+    const int found = ted4_json_text(o, where, "name", &clip.name, c->m);
     if (found <= 0)
         return missing(c, where, "name", found);
     if (ted4_json_text(o, where, "video", &video, c->m) < 0 ||
-        read_lens(c, o, where, &model.lens) != 0 || read_pose(c, o, where, &model) != 0 ||
-        read_start(c, o, where, &model.time) != 0)
+        read_lens(c, o, where, &clip.model.lens) != 0 || read_pose(c, o, where, &clip.model) != 0 ||
+        read_start(c, o, where, &clip.model.time) != 0)
         return -1;
-    return add_clip(c, where, name, video, &model);
+    return find_clip(c, where, &clip, video);
 }
 
 static int read_frames(calibration *c)
@@ -199,6 +201,7 @@ static int read_frames(calibration *c)
     c->stated = (size_t)frames;
     if (most > 0 && c->stated > most)
         c->stated = most;
+    c->clips.most = c->stated > 0 ? c->stated : most;
     return 0;
 }
 
@@ -223,7 +226,7 @@ static int say_times(calibration *c)
                             "frame",
                             c->n_between, c->scene->n_entries, c->farthest) != 0)
         return ted4_say_no_memory(c->m);
-    return c->started ? 0 : ted4_clip_lengths(c->scene, c->shortest, c->longest, c->m);
+    return ted4_clips_say(&c->clips, !c->started, c->scene, c->m);
 }
 
 static int read_all(calibration *c)
@@ -241,6 +244,9 @@ static int read_all(calibration *c)
     for (size_t i = 0; i < n; i++)
         if (read_camera(c, i) != 0)
             return -1;
+    if (ted4_clips_number(&c->clips, c->m) != 0 || check_counts(c) != 0 ||
+        ted4_clips_give(&c->clips, s, c->m) != 0)
+        return -1;
     hold_out_times(s);
     if (say_times(c) != 0)
         return -1;
@@ -256,9 +262,11 @@ int ted4_load_calibration(ted4_raw_scene *s, const char *folder, ted4_message *m
     s->timed = 1;
     c.scene = s;
     c.folder = folder;
+    c.clips.folder = folder;
     c.m = m;
     c.path = ted4_path_join(folder, "cams.json");
     const int result = read_all(&c);
+    ted4_clips_free(&c.clips);
     json_decref(c.root);
     free(c.path);
     return result;

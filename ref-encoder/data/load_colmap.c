@@ -6,7 +6,6 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "data/raw_scene.h"
 
-#include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -47,27 +46,6 @@ static const char *base_name(const char *name)
     const char *slash = strrchr(name, '/');
 
     return slash == NULL ? name : slash + 1;
-}
-
-/* Returns the last run of digits in the base name without its extension, -1 if there is none, or -2
- * if it is too long. */
-static double name_number(const char *name)
-{
-    const char *base = base_name(name), *dot = strrchr(base, '.');
-    const char *end = dot == NULL ? base + strlen(base) : dot, *begin;
-    double v = 0;
-
-    while (end > base && !isdigit((unsigned char)end[-1]))
-        end--;
-    for (begin = end; begin > base && isdigit((unsigned char)begin[-1]); begin--)
-        ;
-    if (begin == end)
-        return -1;
-    if (end - begin > 15) /* a double holds 15 digits */
-        return -2;
-    for (; begin < end; begin++)
-        v = 10 * v + (*begin - '0');
-    return v;
 }
 
 static char *camera_label(const ted4_colmap_image *image)
@@ -112,7 +90,7 @@ static int add_image(ted4_raw_scene *s, const ted4_colmap *c, const ted4_colmap_
     shot->lens = camera->lens;
     memcpy(shot->R, image->R, sizeof shot->R);
     memcpy(shot->t, image->t, sizeof shot->t);
-    shot->time = name_number(image->name);
+    shot->time = ted4_picture_number(image->name);
     if (shot->time == -2)
         return ted4_say(m, "%s: the number in the name has more than 15 digits", where);
     shot->camera = camera_label(image);

@@ -21,8 +21,8 @@ typedef struct {
     ted4_raw_scene *scene;
     const char *folder;
     ted4_poses_bounds table;
-    size_t shortest, longest; /* shortest and longest clip, in frames */
-    ted4_name_list clips;
+    ted4_name_list names; /* of clips */
+    ted4_clips clips;
     int numbered; /* are rows matched by the numbers of the clips? */
     ted4_message *m;
 } neu3d;
@@ -52,34 +52,27 @@ static size_t clip_number(const char *name)
     return *digits != 0 ? v : SIZE_MAX;
 }
 
-static int add_clip(neu3d *n, size_t i)
+static int find_clip(neu3d *n, size_t i)
 {
-    const uint32_t wanted = n->scene->wanted->max_frames;
-    const char *name = n->clips.names[i];
-    ted4_shot model;
-    ted4_name_list pictures;
+    ted4_clip clip;
 
-    memset(&model, 0, sizeof model);
-    model.is_test = i == 0;
-    if (ted4_poses_bounds_camera(&n->table, n->numbered ? clip_number(name) : i, &model, n->m) != 0)
+    memset(&clip, 0, sizeof clip);
+    clip.name = n->names.names[i];
+    clip.model.is_test = i == 0;
+    if (ted4_poses_bounds_camera(&n->table, n->numbered ? clip_number(clip.name) : i, &clip.model,
+                                 n->m) != 0)
         return -1;
-    int result = ted4_clip_pictures(&pictures, n->folder, name, NULL,
-                                    wanted > 0 ? wanted : MOST_FRAMES, n->scene->wanted, n->m);
-    if (result == 0)
-        result = ted4_say(n->m, "%s/%s: neither a video nor a folder of pictures", n->folder, name);
-    if (result < 0)
-        return -1;
-    n->shortest = i == 0 || pictures.n < n->shortest ? pictures.n : n->shortest;
-    n->longest = pictures.n > n->longest ? pictures.n : n->longest;
-    result = ted4_clip_add(n->scene, &pictures, name, &model, n->m);
-    ted4_name_list_free(&pictures);
-    return result;
+    const int found = ted4_clips_find(&n->clips, &clip, NULL, n->scene->wanted, n->m);
+    if (found == 0)
+        return ted4_say(n->m, "%s/%s: neither a video nor a folder of pictures", n->folder,
+                        clip.name);
+    return found < 0 ? -1 : 0;
 }
 
 /* Matches rows to clips. Rows without a clip count as entries without a picture. */
 static int match_rows(neu3d *n)
 {
-    const size_t rows = n->table.rows, clips = n->clips.n;
+    const size_t rows = n->table.rows, clips = n->names.n;
     size_t at = 0;
     char where[600], name[40];
 
@@ -87,16 +80,16 @@ static int match_rows(neu3d *n)
     if (clips == rows)
         return 0;
     /* Sorted names of equal length have increasing numbers. Anything else does not match. */
-    n->numbered = clips < rows && clip_number(n->clips.names[clips - 1]) == rows - 1;
+    n->numbered = clips < rows && clip_number(n->names.names[clips - 1]) == rows - 1;
     for (size_t i = 1; i < clips && n->numbered; i++)
-        n->numbered = clip_number(n->clips.names[i - 1]) < clip_number(n->clips.names[i]);
+        n->numbered = clip_number(n->names.names[i - 1]) < clip_number(n->names.names[i]);
     if (!n->numbered)
         return ted4_say(n->m,
                         "%s: %zu rows, but %zu cameras (cam*.mp4, cam*/images/ or images/cam*/) in "
                         "the folder",
                         n->table.path, rows, clips);
     for (size_t i = 0; i < rows; i++) {
-        if (clip_number(n->clips.names[at]) == i) {
+        if (clip_number(n->names.names[at]) == i) {
             at++;
             continue;
         }
@@ -109,14 +102,16 @@ static int match_rows(neu3d *n)
 
 static int read_all(neu3d *n)
 {
-    if (ted4_clip_names(&n->clips, n->folder) != 0)
+    if (ted4_clip_names(&n->names, n->folder) != 0)
         return ted4_say_no_memory(n->m);
     if (ted4_poses_bounds_read(&n->table, n->folder, n->m) != 0 || match_rows(n) != 0)
         return -1;
-    for (size_t i = 0; i < n->clips.n; i++)
-        if (add_clip(n, i) != 0)
+    for (size_t i = 0; i < n->names.n; i++)
+        if (find_clip(n, i) != 0)
             return -1;
-    if (ted4_clip_lengths(n->scene, n->shortest, n->longest, n->m) != 0)
+    if (ted4_clips_number(&n->clips, n->m) != 0 ||
+        ted4_clips_give(&n->clips, n->scene, n->m) != 0 ||
+        ted4_clips_say(&n->clips, 1, n->scene, n->m) != 0)
         return -1;
     return ted4_ply_find(&n->scene->cloud, n->folder, n->m);
 }
@@ -132,8 +127,11 @@ int ted4_load_neu3d(ted4_raw_scene *s, const char *folder, ted4_message *m)
     n.scene = s;
     n.folder = folder;
     n.m = m;
+    n.clips.folder = folder;
+    n.clips.most = s->wanted->max_frames > 0 ? s->wanted->max_frames : MOST_FRAMES;
     const int result = read_all(&n);
-    ted4_name_list_free(&n.clips);
+    ted4_clips_free(&n.clips);
+    ted4_name_list_free(&n.names);
     ted4_poses_bounds_free(&n.table);
     return result;
 }

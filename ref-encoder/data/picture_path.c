@@ -2,6 +2,7 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "data/picture_path.h"
 
+#include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -97,4 +98,24 @@ int ted4_picture_find(const char *folder, const char *name, const char *part, ch
         result = try_folders(folder, tail, part, path);
     free(copy);
     return result;
+}
+
+double ted4_picture_number(const char *name)
+{
+    const char *slash = strrchr(name, '/'), *base = slash == NULL ? name : slash + 1;
+    const char *dot = strrchr(base, '.');
+    const char *end = dot == NULL ? base + strlen(base) : dot, *begin;
+    double v = 0;
+
+    while (end > base && !isdigit((unsigned char)end[-1]))
+        end--;
+    for (begin = end; begin > base && isdigit((unsigned char)begin[-1]); begin--)
+        ;
+    if (begin == end)
+        return -1;
+    if (end - begin > 15) /* a double holds 15 digits */
+        return -2;
+    for (; begin < end; begin++)
+        v = 10 * v + (*begin - '0');
+    return v;
 }

@@ -15,4 +15,8 @@ int ted4_picture_find(const char *folder, const char *name, const char *part, ch
 /* Does the name end in the extension of a picture? */
 int ted4_picture_is_named(const char *name);
 
+/* Returns the last run of digits in the base name without its extension, -1 if there is none, or -2
+ * if it has more than 15 digits, which a double may not hold. */
+double ted4_picture_number(const char *name);
+
 #endif

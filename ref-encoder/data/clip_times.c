@@ -1,0 +1,175 @@
+/* clip_times.c - the times of pictures in clips. See clip.h.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "data/clip.h"
+
+#include <stdlib.h>
+#include "data/data_util.h"
+#include "data/picture_path.h"
+
+static uint64_t number_of(const ted4_clip *clip, size_t i)
+{
+    return (uint64_t)ted4_picture_number(clip->pictures.names[i]);
+}
+
+/* Does every picture have a number, larger than that of the picture before? */
+static int has_numbers(const ted4_clip *clip)
+{
+    double before = -1;
+
+    for (size_t i = 0; i < clip->pictures.n; i++) {
+        const double number = ted4_picture_number(clip->pictures.names[i]);
+        if (number <= before)
+            return 0;
+        before = number;
+    }
+    return 1;
+}
+
+static uint64_t common_divisor(uint64_t a, uint64_t b)
+{
+    while (b > 0) {
+        const uint64_t rest = a % b;
+        a = b;
+        b = rest;
+    }
+    return a;
+}
+
+/* Finds base and step of all numbers. Returns whether there are any numbers. */
+static int find_step(ted4_clips *c)
+{
+    int any = 0;
+
+    for (const ted4_clip *clip = c->list; clip < c->list + c->n; clip++) {
+        if (clip->is_video)
+            continue;
+        if (!has_numbers(clip))
+            return 0;
+        c->base = any && c->base < number_of(clip, 0) ? c->base : number_of(clip, 0);
+        any = 1;
+    }
+    c->step = 0;
+    for (const ted4_clip *clip = c->list; clip < c->list + c->n; clip++)
+        for (size_t i = 0; i < clip->pictures.n && !clip->is_video; i++)
+            c->step = common_divisor(number_of(clip, i) - c->base, c->step);
+    c->step = c->step > 0 ? c->step : 1;
+    return any;
+}
+
+/* The numbers count frames if more pictures are there than are missing. Cameras that number their
+ * pictures independently, or by a clock, would lack most of them. */
+static void judge_numbers(ted4_clips *c)
+{
+    uint64_t there = 0, expected = 0;
+
+    if (!find_step(c))
+        return;
+    for (const ted4_clip *clip = c->list; clip < c->list + c->n; clip++) {
+        const size_t n = clip->pictures.n;
+        if (clip->is_video)
+            continue;
+        there += n;
+        expected += (number_of(clip, n - 1) - c->base) / c->step + 1;
+    }
+    c->is_counted = there > expected - there;
+    c->expected = expected;
+    c->lacking = expected - there;
+}
+
+/* Leaves out pictures that are not among the first most frames. */
+static int number_clip(ted4_clip *clip, const ted4_clips *c)
+{
+    const int counted = c->is_counted && !clip->is_video;
+    const size_t n = clip->pictures.n;
+    size_t kept = 0;
+
+    clip->frame = malloc(n * sizeof *clip->frame);
+    if (clip->frame == NULL)
+        return -1;
+    for (size_t i = 0; i < n; i++) {
+        const uint64_t frame = counted ? (number_of(clip, i) - c->base) / c->step : i;
+        clip->frames = frame + 1;
+        if (c->most > 0 && clip->frames > c->most) {
+            clip->frames = c->most;
+            free(clip->pictures.names[i]);
+        } else {
+            clip->frame[kept] = (uint32_t)frame;
+            clip->pictures.names[kept++] = clip->pictures.names[i];
+        }
+    }
+    clip->pictures.n = kept;
+    return 0;
+}
+
+int ted4_clips_number(ted4_clips *c, ted4_message *m)
+{
+    judge_numbers(c);
+    for (size_t i = 0; i < c->n; i++)
+        if (number_clip(&c->list[i], c) != 0)
+            return ted4_say_no_memory(m);
+    return 0;
+}
+
+/* Returns the first frame of which the clip has no picture. */
+static size_t first_gap(const ted4_clip *clip)
+{
+    size_t i = 0;
+
+    while (i < clip->pictures.n && clip->frame[i] == i)
+        i++;
+    return i;
+}
+
+static int say_gaps(const ted4_clips *c, ted4_raw_scene *s)
+{
+    const ted4_clip *first = NULL;
+    size_t missing = 0, frames = 0;
+
+    for (const ted4_clip *clip = c->list; clip < c->list + c->n; clip++) {
+        frames += clip->frames;
+        missing += clip->frames - clip->pictures.n;
+        if (first == NULL && clip->pictures.n < clip->frames)
+            first = clip;
+    }
+    if (first == NULL)
+        return 0;
+    return ted4_raw_scene_warn(s,
+                               "clips lack pictures by the numbers in their names: %zu of %zu; the "
+                               "first: %s has none of number %llu",
+                               missing, frames, first->name,
+                               (unsigned long long)(c->base + first_gap(first) * c->step));
+}
+
+static int say_ends(const ted4_clips *c, ted4_raw_scene *s)
+{
+    size_t shortest = SIZE_MAX, longest = 0;
+
+    for (const ted4_clip *clip = c->list; clip < c->list + c->n; clip++) {
+        shortest = clip->frames < shortest ? clip->frames : shortest;
+        longest = clip->frames > longest ? clip->frames : longest;
+    }
+    if (shortest >= longest)
+        return 0;
+    return ted4_raw_scene_warn(s,
+                               "clips have from %zu to %zu frames: at the last times some cameras "
+                               "are missing (--max-frames %zu leaves these times out)",
+                               shortest, longest, shortest);
+}
+
+int ted4_clips_say(const ted4_clips *c, int together, ted4_raw_scene *s, ted4_message *m)
+{
+    int result = 0;
+
+    if (!c->is_counted && c->lacking > 0)
+        result = ted4_raw_scene_warn(s,
+                                     "by the numbers in their names, clips would lack %llu of %llu "
+                                     "pictures: the pictures of each clip are counted in their "
+                                     "order instead",
+                                     (unsigned long long)c->lacking,
+                                     (unsigned long long)c->expected);
+    if (result == 0)
+        result = say_gaps(c, s);
+    if (result == 0 && together)
+        result = say_ends(c, s);
+    return result == 0 ? 0 : ted4_say_no_memory(m);
+}
