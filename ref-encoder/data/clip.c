@@ -179,15 +179,13 @@ static int find_place(const ted4_clips *c, ted4_clip *clip, const char *video, c
 {
     char *path = video == NULL ? NULL : ted4_path_join(c->folder, video);
 
+    if (video != NULL && path == NULL)
+        return ted4_say_no_memory(m);
     if (path != NULL && ted4_is_folder(path)) {
         *place = path;
         return 1;
     }
-    if (path != NULL && !ted4_is_file(path)) {
-        free(path);
-        path = NULL;
-    }
-    if (path == NULL) {
+    if (video == NULL) {
         *place = inner_folder(c->folder, "images", clip->name);
         if (*place == NULL)
             *place = inner_folder(c->folder, clip->name, "images");
@@ -195,8 +193,10 @@ static int find_place(const ted4_clips *c, ted4_clip *clip, const char *video, c
             return 1;
         path = find_video(c->folder, clip->name);
     }
-    if (path == NULL)
+    if (path == NULL || !ted4_is_file(path)) {
+        free(path);
         return 0;
+    }
     clip->is_video = 1;
     *place = ted4_video_unpack(path, c->most, o, m);
     free(path);

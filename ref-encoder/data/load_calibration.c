@@ -1,10 +1,10 @@
 /* load_calibration.c - loads the layout "calibration": cams.json describes fixed cameras by
  * OpenCV's model, with one clip each (clip.h). A camera has name, video (a file or a folder of
- * pictures; clip.h says what happens without it), w, h, K (3x3), dist (k1 k2 p1 p2 and optionally
- * k3), w2c (world to camera, 4x4; right, down, forward), and start (seconds) or frame, which say
- * when its clip begins. At the top are frames (the number of frames that are read, and that each
- * clip must have at least) and fps. Cameras without a clip are left out. TED4_HOLD_OUT_* selects
- * the times that are held out, for all cameras.
+ * pictures; clip.h says where it is looked for without this field), w, h, K (3x3), dist (k1 k2 p1
+ * p2 and optionally k3), w2c (world to camera, 4x4; right, down, forward), and start (seconds) or
+ * frame, which say when its clip begins. At the top are frames (the number of frames that are read,
+ * and that each clip must have at least) and fps. Cameras without a clip are left out.
+ * TED4_HOLD_OUT_* selects the times that are held out, for all cameras.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "data/raw_scene.h"
 
@@ -158,13 +158,28 @@ static int find_clip(calibration *c, const char *where, const ted4_clip *clip, c
 
     c->scene->n_entries++;
     const int found = ted4_clips_find(&c->clips, clip, video, c->scene->wanted, c->m);
+    if (found == 0 && video != NULL)
+        return ted4_say(c->m, "%s.video: %.150s: no such video or folder of pictures", where,
+                        video);
     if (found == 0) {
         snprintf(text, sizeof text,
                  "%.150s: no such video, nor a folder images/%.60s or %.60s/images of its pictures",
-                 video != NULL ? video : clip->name, clip->name, clip->name);
+                 clip->name, clip->name, clip->name);
         ted4_raw_scene_missing(c->scene, where, text);
     }
     return found < 0 ? -1 : 0;
+}
+
+/* Refuses the name of an earlier camera, whose pictures would count as this one's. */
+static int check_name(const calibration *c, const char *where, const char *name, size_t i)
+{
+    const json_t *cameras = json_object_get(c->root, "cameras");
+
+    for (size_t k = 0; k < i; k++)
+        if (strcmp(json_string_value(json_object_get(json_array_get(cameras, k), "name")), name) ==
+            0)
+            return ted4_say(c->m, "%s.name: %s, as cameras[%zu]", where, name, k);
+    return 0;
 }
 
 static int read_camera(calibration *c, size_t i)
@@ -180,7 +195,8 @@ static int read_camera(calibration *c, size_t i)
     const int found = ted4_json_text(o, where, "name", &clip.name, c->m);
     if (found <= 0)
         return missing(c, where, "name", found);
-    if (ted4_json_text(o, where, "video", &video, c->m) < 0 ||
+    if (check_name(c, where, clip.name, i) != 0 ||
+        ted4_json_text(o, where, "video", &video, c->m) < 0 ||
         read_lens(c, o, where, &clip.model.lens) != 0 || read_pose(c, o, where, &clip.model) != 0 ||
         read_start(c, o, where, &clip.model.time) != 0)
         return -1;

@@ -187,41 +187,44 @@ static void calibration(const tiny_folder *f, const char *top, const char *camer
     tiny_text(f, "cams.json", s.text);
 }
 
+static const char good[] = "\"name\": \"two\"," SIZE K W2C;
+
+static const struct {
+    const char *top, *camera, *where, *what;
+} calibration_cases[] = {
+    { "\"frames\": 3,", good, "cams.json: cameras[0]",
+      "2 frames, expected 3 by the file's frames" },
+    { "\"frames\": 2.5,", good, "cams.json.frames", "2.5" },
+    { "\"frames\": 1e9,", good, "cams.json.frames", "1e+09" },
+    { "\"fps\": -1,", good, "cams.json.fps", "-1" },
+    { "\"fps\": 1e-9,", good, "cams.json.fps", "from 1/16777215" },
+    { "\"fps\": 3e7,", good, "cams.json.fps", "to 16777215" },
+    { "", SIZE K W2C, "cameras[1]", "no name" },
+    { "", "\"name\": \"two\"," K W2C, "cameras[1]", "no w, h" },
+    { "", "\"name\": \"one\"," SIZE K W2C, "cams.json: cameras[1].name: ", "one, as cameras[0]" },
+    { "", "\"name\": \"two\"," SIZE W2C, "cameras[1]", "no K" },
+    { "", "\"name\": \"two\"," SIZE "\"K\": [[9,0,8],[0,9,6]]," W2C, "cameras[1].K",
+      "expected 9 numbers" },
+    { "", "\"name\": \"two\"," SIZE "\"K\": [[9,0,8],[1,9,6],[0,0,1]]," W2C, "cameras[1].K",
+      "expected fx s cx" },
+    { "", "\"name\": \"two\"," SIZE K "\"dist\": [1, 2]," W2C, "cameras[1].dist",
+      "expected 4 to 5 numbers" },
+    { "", "\"name\": \"two\"," SIZE K "\"dist\": [1, 2, 3, 4, 5, 6]," W2C, "cameras[1].dist",
+      "expected 4 to 5 numbers" },
+    { "", "\"name\": \"two\"," SIZE K "\"w2c\": [[1,0,0,0],[0,1,0,0],[0,0,-1,0]]", "cameras[1].w2c",
+      "mirror" },
+    { "", "\"name\": \"two\", \"w\": 16, \"h\": 12," K "\"x\": 1", "cameras[1]", "no w2c" },
+    { "", "\"name\": \"two\", \"start\": 1," SIZE K W2C, "cameras[1].start", "no fps" },
+    { "\"fps\": 30,", "\"name\": \"two\", \"start\": 1, \"frame\": 3," SIZE K W2C, "cameras[1]",
+      "both start and frame" },
+    { "", "\"name\": \"two\", \"frame\": 1.5," SIZE K W2C, "cameras[1].frame", "1.5" },
+    { "", "\"name\": \"two\", \"frame\": 1e9," SIZE K W2C, "cameras[1]", "1e+09 frames" },
+    { "", "\"name\": \"two\", \"w\": 20, \"h\": 12," K W2C, "two/images/0.png",
+      "its camera says 20x12" },
+};
+
 static void test_calibration(void **state)
 {
-    static const char good[] = "\"name\": \"two\"," SIZE K W2C;
-    static const struct {
-        const char *top, *camera, *where, *what;
-    } cases[] = {
-        { "\"frames\": 3,", good, "cams.json: cameras[0]",
-          "2 frames, expected 3 by the file's frames" },
-        { "\"frames\": 2.5,", good, "cams.json.frames", "2.5" },
-        { "\"frames\": 1e9,", good, "cams.json.frames", "1e+09" },
-        { "\"fps\": -1,", good, "cams.json.fps", "-1" },
-        { "\"fps\": 1e-9,", good, "cams.json.fps", "from 1/16777215" },
-        { "\"fps\": 3e7,", good, "cams.json.fps", "to 16777215" },
-        { "", SIZE K W2C, "cameras[1]", "no name" },
-        { "", "\"name\": \"two\"," K W2C, "cameras[1]", "no w, h" },
-        { "", "\"name\": \"two\"," SIZE W2C, "cameras[1]", "no K" },
-        { "", "\"name\": \"two\"," SIZE "\"K\": [[9,0,8],[0,9,6]]," W2C, "cameras[1].K",
-          "expected 9 numbers" },
-        { "", "\"name\": \"two\"," SIZE "\"K\": [[9,0,8],[1,9,6],[0,0,1]]," W2C, "cameras[1].K",
-          "expected fx s cx" },
-        { "", "\"name\": \"two\"," SIZE K "\"dist\": [1, 2]," W2C, "cameras[1].dist",
-          "expected 4 to 5 numbers" },
-        { "", "\"name\": \"two\"," SIZE K "\"dist\": [1, 2, 3, 4, 5, 6]," W2C, "cameras[1].dist",
-          "expected 4 to 5 numbers" },
-        { "", "\"name\": \"two\"," SIZE K "\"w2c\": [[1,0,0,0],[0,1,0,0],[0,0,-1,0]]",
-          "cameras[1].w2c", "mirror" },
-        { "", "\"name\": \"two\", \"w\": 16, \"h\": 12," K "\"x\": 1", "cameras[1]", "no w2c" },
-        { "", "\"name\": \"two\", \"start\": 1," SIZE K W2C, "cameras[1].start", "no fps" },
-        { "\"fps\": 30,", "\"name\": \"two\", \"start\": 1, \"frame\": 3," SIZE K W2C, "cameras[1]",
-          "both start and frame" },
-        { "", "\"name\": \"two\", \"frame\": 1.5," SIZE K W2C, "cameras[1].frame", "1.5" },
-        { "", "\"name\": \"two\", \"frame\": 1e9," SIZE K W2C, "cameras[1]", "1e+09 frames" },
-        { "", "\"name\": \"two\", \"w\": 20, \"h\": 12," K W2C, "two/images/0.png",
-          "its camera says 20x12" },
-    };
     tiny_folder f = tiny_new();
 
     (void)state;
@@ -232,9 +235,9 @@ static void test_calibration(void **state)
     }
     calibration(&f, "", good);
     accept(&f);
-    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        calibration(&f, cases[i].top, cases[i].camera);
-        refuse(&f, cases[i].where, cases[i].what);
+    for (size_t i = 0; i < sizeof calibration_cases / sizeof calibration_cases[0]; i++) {
+        calibration(&f, calibration_cases[i].top, calibration_cases[i].camera);
+        refuse(&f, calibration_cases[i].where, calibration_cases[i].what);
     }
     calibration(&f, "", good);
     must(remove(tiny_path(&f, "two/images/1.png")) == 0, "1.png");
@@ -242,9 +245,9 @@ static void test_calibration(void **state)
     calibration(&f, "", "\"name\": \"six\"," SIZE K W2C);
     assert_int_equal(
         warned(&f, "1 of 2 entries has no picture: ", "cameras[1]: six: no such video"), 2);
-    calibration(&f, "", "\"name\": \"six\", \"video\": \"x.mkv\"," SIZE K W2C);
-    assert_int_equal(
-        warned(&f, "1 of 2 entries has no picture: ", "cameras[1]: x.mkv: no such video"), 2);
+    /* A video that is named is not replaced by other pictures of the camera. */
+    calibration(&f, "", "\"name\": \"two\", \"video\": \"x.mkv\"," SIZE K W2C);
+    refuse(&f, "cams.json: cameras[1].video: x.mkv: ", "no such video or folder of pictures");
     tiny_text(&f, "cams.json", "{}");
     refuse(&f, "cams.json", "cameras: expected a list");
     tiny_free(&f);

@@ -487,8 +487,10 @@ static void put_calibration(FILE *f, const ted4_ray_options *o, int number, int 
         ted4_ray_camera_stated(o, test_first(o, i), &c);
         ted4_ray_camera_name(o, test_first(o, i), name);
         pose_of(&c, R, t);
-        fprintf(f, "%s\n{\"name\": \"%s\", \"video\": \"%s.mp4\", \"w\": %d, \"h\": %d,\n",
-                i > 0 ? "," : "", name, name, c.width, c.height);
+        fprintf(f, "%s\n{\"name\": \"%s\", ", i > 0 ? "," : "", name);
+        if (o->video)
+            fprintf(f, "\"video\": \"%s.mp4\", ", name);
+        fprintf(f, "\"w\": %d, \"h\": %d,\n", c.width, c.height);
         fprintf(f, " \"K\": [[%.17g, 0, %.17g], [0, %.17g, %.17g], [0, 0, 1]],", c.focal,
                 c.cx - 0.5, c.focal, c.cy - 0.5);
         fputs(" \"dist\": [0, 0, 0, 0],\n ", f);
