@@ -133,6 +133,42 @@ int ted4_colmap_txt_cameras(ted4_colmap *c, const char *path, ted4_message *m)
     return result;
 }
 
+/* Is this a line of observations, X Y POINT3D_ID each? Most numbers are told by their letters, as
+ * such lines make up most of a large file. */
+static int is_observations(const char *at)
+{
+    size_t n = 0;
+
+    for (at += strspn(at, " \t"); *at != 0; at += strspn(at, " \t")) {
+        const char *end = at;
+        char *parsed;
+        while ((*end >= '0' && *end <= '9') || *end == '.')
+            end++;
+        if (end == at || (*end != 0 && *end != ' ' && *end != '\t')) {
+            strtod(at, &parsed);
+            end = parsed;
+            if (end == at || (*end != 0 && *end != ' ' && *end != '\t'))
+                return 0;
+        }
+        at = end;
+        n++;
+    }
+    return n % 3 == 0;
+}
+
+/* Reads the line after that of an image, which may be missing at the end of the file. */
+static int read_observations(text_reader *r, ted4_message *m)
+{
+    const char *line = any_line(r);
+
+    if (line == NULL || is_observations(line))
+        return 0;
+    return ted4_say(m,
+                    "%s: expected the observations of the image on the line before: X Y POINT3D_ID "
+                    "for each, or an empty line",
+                    r->where);
+}
+
 static int read_image(text_reader *r, char *line, ted4_colmap_image *image, ted4_message *m)
 {
     char *at = line;
@@ -148,8 +184,7 @@ static int read_image(text_reader *r, char *line, ted4_colmap_image *image, ted4
         return ted4_say_no_memory(m);
     if (ted4_colmap_set_pose(image, qt, r->where, m) != 0)
         return -1;
-    any_line(r); /* observations */
-    return 0;
+    return read_observations(r, m);
 }
 
 int ted4_colmap_txt_images(ted4_colmap *c, const char *path, ted4_message *m)

@@ -278,7 +278,10 @@ void ted4_dataset_print(const ted4_dataset *d, FILE *out)
         widen(&box[i % 3], d->points[i]);
     fprintf(out, "points      %zu%s\nbounds      ", d->n_points,
             d->random_points ? " (random)" : "");
-    print_box(out, box);
+    if (d->n_points > 0)
+        print_box(out, box);
+    else
+        fputs("none\n", out);
     fprintf(out, "background  %d %d %d\n", d->background[0], d->background[1], d->background[2]);
     if (d->n_frames == 1)
         return;

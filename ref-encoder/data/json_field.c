@@ -35,6 +35,17 @@ int ted4_json_number(const json_t *object, const char *where, const char *name, 
     return 1;
 }
 
+int ted4_json_time(const json_t *object, const char *where, const char *name, double *v,
+                   ted4_message *m)
+{
+    static const double most = 1e300;
+    const int found = ted4_json_number(object, where, name, v, m);
+
+    if (found <= 0 || fabs(*v) <= most)
+        return found;
+    return ted4_say(m, "%s.%s: %g, expected at most %g on either side of 0", where, name, *v, most);
+}
+
 int ted4_json_text(const json_t *object, const char *where, const char *name, const char **v,
                    ted4_message *m)
 {

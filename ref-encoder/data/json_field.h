@@ -18,6 +18,10 @@ json_t *ted4_json_read(const char *path, ted4_message *m);
 int ted4_json_number(const json_t *object, const char *where, const char *name, double *v,
                      ted4_message *m);
 
+/* Reads a time, and refuses those so large that a difference could be infinite. */
+int ted4_json_time(const json_t *object, const char *where, const char *name, double *v,
+                   ted4_message *m);
+
 /* Reads a string. *v is borrowed from the object. */
 int ted4_json_text(const json_t *object, const char *where, const char *name, const char **v,
                    ted4_message *m);

@@ -150,7 +150,7 @@ static int read_metadata(hypernerf *h, const char *id, ted4_shot *shot)
     if (!json_is_object(entry))
         return ted4_say(h->m, "%s: no such entry, expected an object with warp_id", where);
     for (size_t i = 0; i < sizeof names / sizeof names[0] && found == 0; i++)
-        found = ted4_json_number(entry, where, names[i], &shot->time, h->m);
+        found = ted4_json_time(entry, where, names[i], &shot->time, h->m);
     if (found == 0)
         return ted4_say(h->m, "%s.warp_id: missing", where);
     const int labelled = found < 0 ? -1

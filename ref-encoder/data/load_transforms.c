@@ -153,8 +153,7 @@ static int read_times(ted4_transforms *t, int is_first)
     for (size_t i = 0; i < n && timed > 0; i++) {
         snprintf(t->where, sizeof t->where, "%.600s: frames[%zu]", t->path, i);
         double time = 0;
-        const int found =
-            ted4_json_number(json_array_get(frames, i), t->where, "time", &time, t->m);
+        const int found = ted4_json_time(json_array_get(frames, i), t->where, "time", &time, t->m);
         if (found < 0)
             return -1;
         if (found == 0)

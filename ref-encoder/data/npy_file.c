@@ -30,6 +30,16 @@ static const char *after(const char *text, const char *key)
     return at;
 }
 
+/* Refuses numbers of another type, given as the header says it: in quotes, unless it is a list. */
+static int wrong_type(const char *path, const char *type, ted4_message *m)
+{
+    const size_t n = *type == '\'' ? strcspn(type + 1, "'") + 2 : strcspn(type, ",}");
+
+    return *type == 0 ? ted4_say(m, "%s: no type of numbers, expected '<f4' or '<f8'", path)
+                      : ted4_say(m, "%s: numbers of type %.*s, expected '<f4' or '<f8'", path,
+                                 (int)n, type);
+}
+
 static int read_header(table *t, const char *path, const uint8_t *p, size_t size, ted4_message *m)
 {
     unsigned long rows = 0, columns = 0;
@@ -47,7 +57,7 @@ static int read_header(table *t, const char *path, const uint8_t *p, size_t size
     const char *type = after(t->text, "'descr'");
     t->item = strncmp(type, "'<f8'", 5) == 0 ? 8 : strncmp(type, "'<f4'", 5) == 0 ? 4 : 0;
     if (t->item == 0)
-        return ted4_say(m, "%s: numbers of type %.8s, expected '<f4' or '<f8'", path, type);
+        return wrong_type(path, type, m);
     if (strncmp(after(t->text, "'fortran_order'"), "False", 5) != 0)
         return ted4_say(m, "%s: Fortran order, expected C order", path);
     char end = 0, last = 0;

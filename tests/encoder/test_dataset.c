@@ -515,8 +515,9 @@ static void test_print(void **state)
         text, "layout      nerfstudio\npictures    9 train, 1 test\ncameras     2\nframes      5\n"
               "size        16 x 12 pixels\nfocal       30..31 x 30..32 pixels\n"));
     assert_non_null(strstr(text, "rate        25 frames/s\n"));
-    /* A single frame has no frame rate, whatever its file says. */
+    /* A single frame has no frame rate, whatever its file says; no points have no bounds. */
     d.n_frames = 1;
+    d.n_points = 0;
     out = tmpfile();
     assert_non_null(out);
     ted4_dataset_print(&d, out);
@@ -524,6 +525,7 @@ static void test_print(void **state)
     text[fread(text, 1, sizeof text - 1, out)] = 0;
     fclose(out);
     assert_null(strstr(text, "rate"));
+    assert_non_null(strstr(text, "points      0\nbounds      none\n"));
     ted4_dataset_free(&d);
     tiny_free(&f);
 }

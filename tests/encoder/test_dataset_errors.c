@@ -94,6 +94,11 @@ static void test_transforms(void **state)
               "{\"fl_x\": 9, \"frames\": [{\"file_path\": \"p\", \"time\": 0, "
               "\"transform_matrix\": " TINY_POSE "}]}");
     refuse(&f, "transforms_test.json", "have a time");
+    tiny_text(&f, "transforms_train.json",
+              "{\"fl_x\": 9, \"frames\": [{\"file_path\": \"p\", \"time\": -1e308, "
+              "\"transform_matrix\": " TINY_POSE "}, {\"file_path\": \"p\", \"time\": 1e308, "
+              "\"transform_matrix\": " TINY_POSE "}]}");
+    refuse(&f, "transforms_train.json: frames[0].time: -1e+308", "expected at most 1e+300");
     tiny_free(&f);
 }
 
@@ -144,6 +149,13 @@ static void test_colmap_text(void **state)
         { camera, "1 1 0 0 0 0 0 0 5 p1.png\n", "", "p1.png", "camera 5 is not in" },
         { camera, "1 1 0 0 0 0 0 0 1 p1.png\n\n1 1 0 0 0 0 0 0 1 p.png\n\n", "", "COLMAP images",
           "order in time" },
+        { camera, "1 1 0 0 0 0 0 0 1 p1.png\n2 1 0 0 0 0 0 0 1 p1.png\n", "", "images.txt:2: ",
+          "expected the observations of the image on the line before: X Y POINT3D_ID for each, or "
+          "an empty line" },
+        { camera, "# c\r\n\r\n1 1 0 0 0 0 0 0 1 p1.png\r\n1 2 3 4\r\n", "",
+          "images.txt:4: ", "expected the observations" },
+        { camera, "1 1 0 0 0 0 0 0 1 p1.png\n1 2 x\n", "", "images.txt:2: ", "observations" },
+        { camera, "1 1 0 0 0 0 0 0 1 p1.png\n1 2 3 4 5 6-\n", "", "images.txt:2: ", "observ" },
         { camera, image, "1 0 0 nan 1 1 1\n", "points3D.txt:1", "not finite" },
         { camera, image, "1 0 0 0 1 1\n", "points3D.txt:1", "expected POINT_ID" },
         { "1 PINHOLE 20 12 9 9 8 6\n", image, "", "p1.png", "its camera says 20x12" },
