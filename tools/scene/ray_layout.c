@@ -511,14 +511,15 @@ static int has_points(const ted4_ray_options *o)
     return o->ways.points != RAY_NO_POINTS;
 }
 
+/* A list without pictures would be an error where it is read. */
 static int has_test(const ted4_ray_options *o)
 {
-    return o->ways.split == RAY_TEST_FILE || o->ways.split == RAY_OTHER_TIMES;
+    return o->n_test > 0 && (o->ways.split == RAY_TEST_FILE || o->ways.split == RAY_OTHER_TIMES);
 }
 
 static int has_val(const ted4_ray_options *o)
 {
-    return o->ways.split == RAY_VAL_FILE;
+    return o->n_test > 0 && o->ways.split == RAY_VAL_FILE;
 }
 
 /* The file by which a folder is recognised as a scene comes last. */

@@ -2,7 +2,6 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "ray_picture.h"
 
-#include <errno.h>
 #include <setjmp.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,6 +11,7 @@
 
 #include "ray_palette.h"
 #include "ray_rig.h"
+#include "ray_save.h"
 
 enum { QUALITY = 98 };
 
@@ -108,16 +108,12 @@ static int put_png(FILE *f, const raw *r, int clear)
 static int write_other_png(const ted4_ray_options *o, const char *path, int clear, raw *r,
                            const uint8_t *rgba, ted4_ray_message *m)
 {
-    FILE *const f = fopen(path, "wb");
-    int bad;
+    ted4_ray_collected c;
 
-    if (f == NULL)
-        return complain(m, path, strerror(errno));
-    bad = fill(o, r, rgba) != 0 || put_png(f, r, clear) != 0;
+    ted4_ray_collect(&c);
+    const int bad = c.file == NULL || fill(o, r, rgba) != 0 || put_png(c.file, r, clear) != 0;
     free(r->rows);
-    if (fclose(f) != 0 || bad)
-        return complain(m, path, "cannot write it (disk full?)");
-    return 0;
+    return ted4_ray_collect_end(&c, bad, path, m);
 }
 
 /* Writes 8 bits per channel, with libpng's simplified interface. */
@@ -128,10 +124,12 @@ static int write_png(const char *path, png_uint_32 format, int width, int height
                       .format = format,
                       .width = (png_uint_32)width,
                       .height = (png_uint_32)height };
+    ted4_ray_collected c;
 
-    if (png_image_write_to_file(&png, path, 0, pixels, 0, NULL) == 0)
-        return complain(m, path, png.message);
-    return 0;
+    ted4_ray_collect(&c);
+    const int bad = c.file == NULL ||
+                    png_image_write_to_stdio(&png, c.file, 0, pixels, 0, NULL) == 0;
+    return ted4_ray_collect_end(&c, bad, path, m);
 }
 
 int ted4_ray_write_grey(const char *path, int width, int height, const uint8_t *grey,
@@ -149,7 +147,6 @@ static int write_jpeg(const char *path, int width, int height, int progressive, 
     struct jpeg_error_mgr errors;
     unsigned char *bytes = NULL;
     unsigned long n = 0;
-    size_t written = 0;
 
     jpeg.err = jpeg_std_error(&errors);
     jpeg_create_compress(&jpeg);
@@ -169,16 +166,9 @@ static int write_jpeg(const char *path, int width, int height, int progressive, 
     }
     jpeg_finish_compress(&jpeg);
     jpeg_destroy_compress(&jpeg);
-    FILE *const f = fopen(path, "wb");
-    if (f != NULL) {
-        written = fwrite(bytes, 1, n, f);
-        if (fclose(f) != 0)
-            written = 0;
-    }
+    const int status = ted4_ray_save(path, bytes, n, m);
     free(bytes);
-    if (f == NULL)
-        return complain(m, path, "cannot be made");
-    return written == n ? 0 : complain(m, path, "cannot write it (disk full?)");
+    return status;
 }
 
 /* ---- all kinds ---- */

@@ -2,6 +2,7 @@
  * of a layout, and ray_points.c finds its points. SPDX-License-Identifier: BSD-2-Clause */
 #include "ray_layout.h"
 #include "ray_picture.h"
+#include "ray_save.h"
 #include "ray_shot.h"
 #include "ray_truth.h"
 
@@ -12,6 +13,8 @@
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
+
+#include "tool/leftovers.h"
 
 enum { MAX_PATH = 1024 };
 static const char truth_name[] = "truth.json";
@@ -195,19 +198,14 @@ static int write_file(const ted4_ray_options *o, const char *folder, const ted4_
                       ted4_ray_message *m)
 {
     char path[MAX_PATH];
-    FILE *f;
-    int broken;
+    ted4_ray_collected c;
 
     if (join(path, folder, file->name, m) != 0 || make_parent(path, m) != 0)
         return -1;
-    f = fopen(path, "wb");
-    if (f == NULL)
-        return complain(m, path, strerror(errno));
-    file->put(f, o, file->number, file->frame);
-    broken = ferror(f);
-    if (fclose(f) != 0 || broken)
-        return complain(m, path, "cannot write all of it (disk full?)");
-    return 0;
+    ted4_ray_collect(&c);
+    if (c.file != NULL)
+        file->put(c.file, o, file->number, file->frame);
+    return ted4_ray_collect_end(&c, 0, path, m);
 }
 
 /* Makes every folder for pictures; the D-NeRF layout has both folders even without test cameras. */
@@ -227,24 +225,43 @@ static int make_picture_folders(const ted4_ray_options *o, const char *folder, t
 
 /* ---- videos: lossless, instead of folders of frames ---- */
 
-static int encode(const char *folder, const char *camera, ted4_ray_message *m)
+/* Runs ffmpeg, which makes the file to of the pictures input. Returns 0, or -1. */
+static int run_ffmpeg(const char *input, const char *to)
 {
-    char input[MAX_PATH], output[MAX_PATH];
+    const pid_t child = fork();
     int status = -1;
 
-    if (snprintf(input, sizeof input, "%s/%s/images/%%04d.png", folder, camera) >= MAX_PATH ||
-        snprintf(output, sizeof output, "%s/%s.mp4", folder, camera) >= MAX_PATH)
-        return complain(m, folder, "the path is too long");
-    const pid_t child = fork();
     if (child == 0) {
         execlp("ffmpeg", "ffmpeg", "-nostdin", "-v", "error", "-y", "-framerate", "30", "-i", input,
-               "-c:v", "png", output, (char *)NULL);
+               "-c:v", "png", "-f", "mp4", to, (char *)NULL);
         _exit(127);
     }
-    if (child < 0 || waitpid(child, &status, 0) < 0 || !WIFEXITED(status) ||
-        WEXITSTATUS(status) != 0)
+    if (child < 0)
+        return -1;
+    ted4_leftovers_add(to, child);
+    while (waitpid(child, &status, 0) < 0 && errno == EINTR)
+        ;
+    return WIFEXITED(status) && WEXITSTATUS(status) == 0 ? 0 : -1;
+}
+
+static int encode(const char *folder, const char *camera, ted4_ray_message *m)
+{
+    char input[MAX_PATH], output[MAX_PATH], temporary[MAX_PATH];
+
+    if (snprintf(input, sizeof input, "%s/%s/images/%%04d.png", folder, camera) >= MAX_PATH ||
+        snprintf(output, sizeof output, "%s/%s.mp4", folder, camera) >= MAX_PATH ||
+        snprintf(temporary, sizeof temporary, "%s/%s.%ld.part", folder, camera, (long)getpid()) >=
+            MAX_PATH)
+        return complain(m, folder, "the path is too long");
+    const int bad = run_ffmpeg(input, temporary) != 0;
+    const int failed = bad || rename(temporary, output) != 0;
+    const int why = errno;
+    if (failed)
+        unlink(temporary);
+    ted4_leftovers_forget(temporary);
+    if (bad)
         return complain(m, output, "the program ffmpeg cannot make it (is it installed?)");
-    return 0;
+    return failed ? complain(m, output, strerror(why)) : 0;
 }
 
 static int make_videos(const ted4_ray_options *o, const char *folder, ted4_ray_message *m)

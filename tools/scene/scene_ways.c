@@ -56,6 +56,26 @@ const ted4_argument ted4_scene_ways[TED4_SCENE_N_WAYS] = {
                 "truth/masks: where training pictures show what moves, or its shadow" },
 };
 
+/* Options without a value have none. */
+static const char *const expected[TED4_SCENE_N_WAYS] = {
+    [BACKGROUND] = "room, white, black or transparent",
+    [POINTS] = "surface, box10, none, random or sfm",
+    [UNIT] = "a number from 1e-06 to 1e+06",
+    [UP] = "y or z",
+    [CENTRE] = "X,Y, both from 0 to 1",
+    [ALPHA] = "straight or premultiplied",
+    [PNG] = "16, grey, palette or interlaced",
+    [JPEG] = "baseline or progressive",
+    [PATHS] = "plain, ext or folder",
+    [SPLIT] = "val, train-only or times",
+    [MISSING] = "a whole number from 0 to 1000000",
+};
+
+const char *ted4_scene_way_expected(int number)
+{
+    return expected[number];
+}
+
 static int word(ted4_ray_vocabulary v, const char *text, int *number)
 {
     *number = ted4_ray_word(v, text);

@@ -2,7 +2,6 @@
  * ray_scene.c) as a folder of pictures with poses.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <dirent.h>
-#include <errno.h>
 #include <getopt.h>
 #include <omp.h>
 #include <stdio.h>
@@ -11,8 +10,10 @@
 #include "ray_rig.h"
 #include "scene_ways.h"
 #include "tool/arguments.h"
+#include "tool/leftovers.h"
 
 enum { EXIT_FINE = 0, EXIT_TROUBLE = 3 };
+enum { LEAST_SIDE = 8 };
 
 enum {
     OPT_OUTPUT,
@@ -114,63 +115,70 @@ static int complain(const char *what, const char *why)
     return EXIT_TROUBLE;
 }
 
-/* Parses a decimal integer in [low, high]. */
-static int number(const char *text, long long low, long long high, long long *value)
+static int bad_value(int option, const char *text, const char *expected)
 {
-    char *end;
-
-    errno = 0;
-    *value = strtoll(text, &end, 10);
-    if (end == text || *end != '\0' || errno != 0 || *value < low || *value > high)
-        return complain(text, "not a number in the range of its option (see -h)");
-    return EXIT_FINE;
+    (void)ted4_arguments_bad(COMMAND.program, options[option].name, text, expected);
+    return EXIT_TROUBLE;
 }
 
-static int integer(const char *text, int low, int high, int *value)
+static int integer(int option, const char *text, int low, int high, int *value)
 {
-    long long v;
-    const int status = number(text, low, high, &v);
+    int64_t v;
 
-    if (status == EXIT_FINE)
-        *value = (int)v;
-    return status;
+    if (ted4_arguments_number(text, low, high, &v) != 0) {
+        (void)ted4_arguments_bad_number(COMMAND.program, options[option].name, text, low, high);
+        return EXIT_TROUBLE;
+    }
+    *value = (int)v;
+    return EXIT_FINE;
 }
 
 /* Parses a size such as "160x120". */
 static int size_of(const char *text, ted4_ray_options *o)
 {
-    char width[16];
+    char width[16] = "", expected[80];
+    int64_t w, h;
     const char *const x = strchr(text, 'x');
     const size_t n = x == NULL ? 0 : (size_t)(x - text);
 
-    if (n == 0 || n >= sizeof width)
-        return complain(text, "a size looks like 160x120");
-    memcpy(width, text, n);
-    width[n] = '\0';
-    if (integer(width, 8, TED4_RAY_MAX_SIDE, &o->width) != EXIT_FINE)
-        return EXIT_TROUBLE;
-    return integer(x + 1, 8, TED4_RAY_MAX_SIDE, &o->height);
+    if (n < sizeof width)
+        memcpy(width, text, n);
+    if (ted4_arguments_number(width, LEAST_SIDE, TED4_RAY_MAX_SIDE, &w) != 0 ||
+        ted4_arguments_number(x + 1, LEAST_SIDE, TED4_RAY_MAX_SIDE, &h) != 0) {
+        snprintf(expected, sizeof expected, "a size from %dx%d to %dx%d, such as 160x120",
+                 LEAST_SIDE, LEAST_SIDE, TED4_RAY_MAX_SIDE, TED4_RAY_MAX_SIDE);
+        return bad_value(OPT_SIZE, text, expected);
+    }
+    o->width = (int)w;
+    o->height = (int)h;
+    return EXIT_FINE;
 }
 
 /* Parses a number in [0, high]. */
-static int real(const char *text, double high, double *value)
+static int real(int option, const char *text, double high, double *value)
 {
-    char *end;
+    char *end, expected[80];
 
     *value = strtod(text, &end);
-    if (end == text || *end != '\0' || !(*value >= 0 && *value <= high))
-        return complain(text, "not a number in the range of its option (see -h)");
-    return EXIT_FINE;
+    if (end != text && *end == '\0' && *value >= 0 && *value <= high)
+        return EXIT_FINE;
+    snprintf(expected, sizeof expected, "a number from 0 to %g", high);
+    return bad_value(option, text, expected);
 }
 
 /* Parses "0", or "2" to "1000". */
 static int hold_of(const char *text, int *hold)
 {
-    const int status = integer(text, 0, TED4_RAY_MAX_COUNT, hold);
+    char expected[80];
+    int64_t v;
 
-    if (status == EXIT_FINE && *hold == 1)
-        return complain(text, "would hold out every time");
-    return status;
+    if (ted4_arguments_number(text, 0, TED4_RAY_MAX_COUNT, &v) != 0 || v == 1) {
+        snprintf(expected, sizeof expected, "0, or a whole number from 2 to %d",
+                 TED4_RAY_MAX_COUNT);
+        return bad_value(OPT_HOLD, text, expected);
+    }
+    *hold = (int)v;
+    return EXIT_FINE;
 }
 
 /* Takes the options that were not given from the table. */
@@ -217,29 +225,43 @@ static int scene_of(const char *name, ted4_ray_options *o)
 
 static int layout_of(const char *name, ted4_ray_options *o)
 {
+    char expected[200];
+    size_t n = 0;
+
     for (int l = 0; l < RAY_LAYOUTS; l++) {
-        if (strcmp(name, ted4_ray_layout_name((ted4_ray_layout)l)) == 0) {
+        const char *const known = ted4_ray_layout_name((ted4_ray_layout)l);
+
+        if (strcmp(name, known) == 0) {
             o->layout = (ted4_ray_layout)l;
             return EXIT_FINE;
         }
+        n += (size_t)snprintf(expected + n, sizeof expected - n, "%s%s",
+                              l == 0                 ? ""
+                              : l == RAY_LAYOUTS - 1 ? " or "
+                                                     : ", ",
+                              known);
     }
-    return complain(name, "not a layout (see -h)");
+    return bad_value(OPT_LAYOUT, name, expected);
 }
 
 static int seed_of(const char *text, uint32_t *seed)
 {
-    long long value = 0;
-    const int status = number(text, 0, UINT32_MAX, &value);
+    int64_t v;
 
-    *seed = (uint32_t)value;
-    return status;
+    if (ted4_arguments_number(text, 0, UINT32_MAX, &v) != 0) {
+        (void)ted4_arguments_bad_number(COMMAND.program, options[OPT_SEED].name, text, 0,
+                                        UINT32_MAX);
+        return EXIT_TROUBLE;
+    }
+    *seed = (uint32_t)v;
+    return EXIT_FINE;
 }
 
 static int way(command *c, int index, const char *text)
 {
     if (ted4_scene_way(index, text, &c->set.ways) == 0)
         return EXIT_FINE;
-    return complain(text, "not what goes with its option (see -h)");
+    return bad_value(OPT_WAYS + index, text, ted4_scene_way_expected(index));
 }
 
 static int set_option(command *c, int index, const char *text)
@@ -250,15 +272,15 @@ static int set_option(command *c, int index, const char *text)
     case OPT_OUTPUT: c->folder = text; return EXIT_FINE;
     case OPT_FORCE: c->force = 1; return EXIT_FINE;
     case OPT_VIDEO: o->video = 1; return EXIT_FINE;
-    case OPT_THREADS: return integer(text, 1, 1024, &c->threads);
+    case OPT_THREADS: return integer(index, text, 1, 1024, &c->threads);
     case OPT_SIZE: return size_of(text, o);
-    case OPT_CAMERAS: return integer(text, 1, TED4_RAY_MAX_COUNT, &o->n_train);
-    case OPT_TEST_CAMERAS: return integer(text, 0, TED4_RAY_MAX_COUNT, &o->n_test);
-    case OPT_FRAMES: return integer(text, 1, TED4_RAY_MAX_COUNT, &o->n_frames);
+    case OPT_CAMERAS: return integer(index, text, 1, TED4_RAY_MAX_COUNT, &o->n_train);
+    case OPT_TEST_CAMERAS: return integer(index, text, 0, TED4_RAY_MAX_COUNT, &o->n_test);
+    case OPT_FRAMES: return integer(index, text, 1, TED4_RAY_MAX_COUNT, &o->n_frames);
     case OPT_HOLD: return hold_of(text, &o->hold);
-    case OPT_POSE_ERROR: return real(text, TED4_RAY_MOST_ERROR, &o->pose_error);
-    case OPT_TINT: return real(text, TED4_RAY_MOST_TINT, &o->tint);
-    case OPT_DRIFT: return real(text, TED4_RAY_MOST_DRIFT, &o->drift);
+    case OPT_POSE_ERROR: return real(index, text, TED4_RAY_MOST_ERROR, &o->pose_error);
+    case OPT_TINT: return real(index, text, TED4_RAY_MOST_TINT, &o->tint);
+    case OPT_DRIFT: return real(index, text, TED4_RAY_MOST_DRIFT, &o->drift);
     case OPT_LAYOUT: return layout_of(text, o);
     case OPT_SEED: return seed_of(text, &o->seed);
     default: return way(c, index - OPT_WAYS, text);
@@ -322,6 +344,7 @@ int main(int argc, char **argv)
         return status < 0 ? EXIT_FINE : EXIT_TROUBLE;
     if (!c.force && is_occupied(c.folder))
         return complain(c.folder, "is not empty; -f to write into it");
+    ted4_leftovers_watch();
     if (ted4_ray_write(&c.set, c.folder, &threads, &m) != 0) {
         fprintf(stderr, "ted4scene: %s\n", m.text);
         return EXIT_TROUBLE;
