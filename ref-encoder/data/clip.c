@@ -220,7 +220,7 @@ int ted4_clips_find(ted4_clips *c, const ted4_clip *added, const char *video,
         if (ted4_clip_list(&clip->pictures, place, 1) != 0)
             result = ted4_say_no_memory(m);
         else if (clip->pictures.n == 0)
-            result = ted4_say(m, "%s: no pictures here", place);
+            result = ted4_may_read(place, m) != 0 ? -1 : ted4_say(m, "%s: no pictures here", place);
         keep(&clip->pictures, c->most);
     }
     free(place);

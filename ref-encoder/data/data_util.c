@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 int ted4_say(ted4_message *m, const char *format, ...)
 {
@@ -79,6 +80,17 @@ int ted4_is_folder(const char *path)
     struct stat s;
 
     return stat(path, &s) == 0 && S_ISDIR(s.st_mode);
+}
+
+int ted4_may_read(const char *folder, ted4_message *m)
+{
+    struct stat s;
+
+    if (stat(folder, &s) == 0 && (!S_ISDIR(s.st_mode) || access(folder, R_OK | X_OK) == 0))
+        return 0;
+    if (errno == ENOENT || errno == ENOTDIR)
+        return 0;
+    return ted4_say(m, "%s: %s", folder, strerror(errno));
 }
 
 int ted4_read_whole(const char *path, uint8_t **bytes, size_t *size, ted4_message *m)

@@ -29,6 +29,9 @@ char *ted4_text_copy(const char *text); /* owned by the caller; NULL: no memory 
 int ted4_text_add(char ***list, size_t *n, const char *format, ...) TED4_PRINTF(3, 4);
 int ted4_is_file(const char *path);
 int ted4_is_folder(const char *path);
+/* May the folder be listed and searched? Returns 0 if so, or if there is no such folder, else -1
+ * with *m filled. */
+int ted4_may_read(const char *folder, ted4_message *m);
 
 /* Reads a whole file and appends a zero byte that *size does not count. *bytes is owned by the
  * caller. Returns 0, or -1 with *m filled. */

@@ -33,11 +33,15 @@ static const struct {
 static int load_raw(ted4_raw_scene *s, const char *folder, ted4_message *m)
 {
     if (!ted4_is_folder(folder))
-        return ted4_say(m, "%s: no such folder, expected a scene", folder);
+        return ted4_may_read(folder, m) != 0
+                   ? -1
+                   : ted4_say(m, "%s: no such folder, expected a scene", folder);
     for (size_t i = 0; i < sizeof layouts / sizeof layouts[0]; i++)
         if (layouts[i].probe(folder))
             return layouts[i].load(s, folder, m);
-    return ted4_say(m, "%s: no scene recognised, expected " LAYOUTS, folder);
+    return ted4_may_read(folder, m) != 0
+               ? -1
+               : ted4_say(m, "%s: no scene recognised, expected " LAYOUTS, folder);
 }
 
 int ted4_dataset_load(ted4_dataset *d, const char *folder, const ted4_dataset_options *o,

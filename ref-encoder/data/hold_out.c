@@ -71,32 +71,56 @@ static int is_picture(const ted4_shot *s, const char *name)
     return 0;
 }
 
+/* Does the name fit a picture of another camera than that of shot? */
+static int is_shared(const ted4_raw_scene *s, const ted4_shot *shot, const char *name)
+{
+    for (size_t i = 0; i < s->n_shots; i++)
+        if (is_picture(&s->shots[i], name) && strcmp(s->shots[i].camera, shot->camera) != 0)
+            return 1;
+    return 0;
+}
+
+/* Returns the name of a shot's camera and its length *n: the camera's own, or as much of the path
+ * of the shot's picture as no other camera has. */
+static const char *name_of(const ted4_raw_scene *s, const ted4_shot *shot, size_t *n)
+{
+    if (!shot->is_posed)
+        return short_label(shot->camera, n);
+    const char *name = shot->path + strlen(shot->path);
+    do {
+        for (name--; name > shot->path && name[-1] != '/'; name--)
+            ;
+    } while (name > shot->path && is_shared(s, shot, name));
+    *n = strlen(name);
+    return name;
+}
+
 /* Lists the names of cameras, or of pictures where cameras have no name, as far as there is
  * room. */
 static void list_names(const ted4_raw_scene *s, char *text, size_t size)
 {
+    const size_t full = size - 39;
     size_t used = 0, n = 0;
 
     text[0] = 0;
     for (size_t i = 0; i < s->n_shots; i++) {
         const ted4_shot *shot = &s->shots[i];
-        const char *slash = strrchr(shot->path, '/');
-        const char *name = shot->is_posed ? (slash == NULL ? shot->path : slash + 1) : shot->camera;
-        size_t length = strlen(name), k = 0;
-        if (!shot->is_posed)
-            name = short_label(shot->camera, &length);
+        size_t length = 0, k = 0;
         while (k < i && strcmp(s->shots[k].camera, shot->camera) != 0)
             k++;
         if (k < i)
             continue;
         n++;
-        if (used + length + 40 < size)
+        if (used == full)
+            continue;
+        const char *name = name_of(s, shot, &length);
+        if (used + length + 1 < full)
             used += (size_t)snprintf(text + used, size - used, "%s%.*s", n > 1 ? ", " : "",
                                      (int)length, name);
-        else if (used + 39 < size)
-            used = size - 39;
+        else
+            used = full;
     }
-    if (used == size - 39)
+    if (used == full)
         snprintf(text + strlen(text), 39, ", ... (%zu in all)", n);
 }
 

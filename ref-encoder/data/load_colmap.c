@@ -32,6 +32,22 @@ static char *find_model(const char *folder)
     return NULL;
 }
 
+/* Says why no model was found. */
+static int no_model(const char *folder, ted4_message *m)
+{
+    static const char *const places[] = { "sparse", "sparse/0" };
+
+    for (size_t i = 0; i < sizeof places / sizeof places[0]; i++) {
+        char *place = ted4_path_join(folder, places[i]);
+        const int result = place == NULL ? ted4_say_no_memory(m) : ted4_may_read(place, m);
+        free(place);
+        if (result != 0)
+            return -1;
+    }
+    return ted4_say(m, "%s/sparse: neither cameras.bin nor cameras.txt here or in sparse/0",
+                    folder);
+}
+
 int ted4_is_colmap(const char *folder)
 {
     char *sparse = ted4_path_join(folder, "sparse");
@@ -171,8 +187,7 @@ int ted4_load_colmap(ted4_raw_scene *s, const char *folder, ted4_message *m)
     s->layout = "colmap";
     memset(&c, 0, sizeof c);
     if (model == NULL)
-        result = ted4_say(m, "%s/sparse: neither cameras.bin nor cameras.txt here or in sparse/0",
-                          folder);
+        result = no_model(folder, m);
     else
         result = ted4_colmap_read(&c, model, m);
     if (result == 0 && (images = find_images(s, folder, c.n_images, m)) == NULL)

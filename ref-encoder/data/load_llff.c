@@ -16,6 +16,15 @@ int ted4_is_llff(const char *folder)
     return ted4_is_poses_bounds(folder) && !ted4_is_colmap(folder);
 }
 
+static int may_read_images(const char *folder, ted4_message *m)
+{
+    char *images = ted4_path_join(folder, "images");
+    const int result = images == NULL ? ted4_say_no_memory(m) : ted4_may_read(images, m);
+
+    free(images);
+    return result;
+}
+
 /* Finds the pictures in images_N for the requested reduction N if these are as many as rows, else
  * in images, else in the least reduced images_N. */
 static int find_pictures(ted4_raw_scene *s, const char *folder, size_t rows,
@@ -36,12 +45,14 @@ static int find_pictures(ted4_raw_scene *s, const char *folder, size_t rows,
             break;
         ted4_name_list_free(pictures);
     }
-    return pictures->n == rows
-               ? 0
-               : ted4_say(m,
-                          "%s/poses_bounds.npy: %zu rows, but %zu pictures in %s/, and no cameras "
-                          "(cam*.mp4, cam*/images/ or images/cam*/)",
-                          folder, rows, pictures->n, pictures->n > 0 ? name : "images");
+    if (pictures->n == rows)
+        return 0;
+    if (pictures->n == 0 && may_read_images(folder, m) != 0)
+        return -1;
+    return ted4_say(m,
+                    "%s/poses_bounds.npy: %zu rows, but %zu pictures in %s/, and no cameras "
+                    "(cam*.mp4, cam*/images/ or images/cam*/)",
+                    folder, rows, pictures->n, pictures->n > 0 ? name : "images");
 }
 
 static int add_pictures(ted4_raw_scene *s, const ted4_poses_bounds *table,

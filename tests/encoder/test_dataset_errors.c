@@ -1,6 +1,10 @@
 /* test_dataset_errors.c - every error in a scene gives one message that says where and what, and
  * leaves an empty dataset.
  * SPDX-License-Identifier: BSD-2-Clause */
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include "test.h"
 #include "data/point_cloud.h"
 #include "refuse.h"
@@ -318,13 +322,70 @@ static void test_options(void **state)
     tiny_free(&f);
 }
 
+/* Asserts in a child process, which is no superuser, that loading fails as a path below f may not
+ * be read. Returns 0 if there can be no such process. */
+static int refused_to_others(const tiny_folder *f, const char *where)
+{
+    char path[400];
+    int status;
+    const pid_t child = fork();
+
+    assert_true(child >= 0);
+    if (child == 0) {
+        ted4_dataset d;
+        if (geteuid() == 0 && setuid(65534) != 0)
+            _exit(2);
+        const char *text = tiny_load(&d, f, &tiny_options);
+        snprintf(path, sizeof path, "%s%s", f->path, where);
+        const int right = strstr(text, path) != NULL && strstr(text, ": Permission denied") != NULL;
+        if (!right)
+            fprintf(stderr, "got \"%s\", expected \"%s: Permission denied\"\n", text, path);
+        _exit(right ? 0 : 1);
+    }
+    assert_int_equal(waitpid(child, &status, 0), child);
+    assert_true(WIFEXITED(status) && WEXITSTATUS(status) != 1);
+    return WEXITSTATUS(status) == 0;
+}
+
+static void test_permissions(void **state)
+{
+    static const char *const places[] = { "sparse", "images", "", "cam00/images" };
+    tiny_folder f = tiny_new();
+    int possible = 1;
+
+    (void)state;
+    tiny_text(&f, "sparse/0/cameras.txt", "1 PINHOLE 16 12 9 9 8 6\n");
+    tiny_text(&f, "sparse/0/images.txt", "1 1 0 0 0 0 0 0 1 p.png\n\n");
+    tiny_picture(&f, "images/p.png", TINY_W, TINY_H, 0);
+    tiny_picture(&f, "cam00/images/0.png", TINY_W, TINY_H, 0);
+    must(chmod(f.path, 0755) == 0, f.path);
+    for (size_t i = 0; i < sizeof places / sizeof places[0] && possible; i++) {
+        const char *place = i == 2 ? f.path : tiny_path(&f, places[i]);
+        char where[64] = "";
+        if (i == 3)
+            tiny_text(&f, "cams.json",
+                      "{\"cameras\": [{\"name\": \"cam00\", \"w\": 16, \"h\": 12, \"K\": "
+                      "[[9,0,8],[0,9,6],[0,0,1]], \"w2c\": " TINY_POSE "}]}");
+        if (*places[i] != 0)
+            snprintf(where, sizeof where, "/%s", places[i]);
+        must(chmod(place, 0) == 0, place);
+        possible = refused_to_others(&f, where);
+        must(chmod(place, 0755) == 0, place);
+    }
+    tiny_free(&f);
+    if (!possible) {
+        puts("skipped: the superuser cannot become another user here");
+        skip();
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_transforms),  cmocka_unit_test(test_folders),
         cmocka_unit_test(test_colmap_text), cmocka_unit_test(test_colmap_binary),
         cmocka_unit_test(test_ply),         cmocka_unit_test(test_damaged_pictures),
-        cmocka_unit_test(test_options),
+        cmocka_unit_test(test_options),     cmocka_unit_test(test_permissions),
     };
 
     return cmocka_run_group_tests_name("dataset errors", tests, NULL, NULL);

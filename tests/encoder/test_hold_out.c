@@ -120,7 +120,8 @@ static void test_pictures(void **state)
     held(&f, good, 3, "train/r_001", NULL);
     refused(&f, "r_000_00", "pictures of several cameras are called so");
     refused(&f, "001_02",
-            "expected one of: r_000_00.png, r_001_00.png, r_002_00.png, r_000_00.png");
+            "expected one of: train/r_000_00.png, r_001_00.png, r_002_00.png, test/r_000_00.png");
+    held(&f, (const char *const[]) { "test/r_000_00.png" }, 1, "test/r_000", NULL);
     tiny_free(&f);
     f = write_scene(RAY_NEU3D);
     held(&f, (const char *const[]) { "cam01/images/0000.png" }, 1, "cam01", NULL);
