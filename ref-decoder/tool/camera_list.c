@@ -94,6 +94,8 @@ static const char *get_camera(const json_t *o, ted4_listed_camera *c)
         return "needs cx and cy";
     if (!get_numbers(o, "R", 9, v->R) || !ted4_is_rotation(v->R))
         return "needs R, a rotation of 9 numbers";
+    if (ted4_is_mirrored(v->R))
+        return "has an R that is a mirror image, not a rotation";
     if (!get_numbers(o, "t", 3, v->t))
         return "needs t, 3 numbers";
     if (json_object_get(o, "pixel") != NULL &&
@@ -126,7 +128,7 @@ int ted4_camera_list_load(ted4_camera_list *l, const char *path, char *why, size
     json_t *const list = load_json(path, why, why_size);
     const char *wrong = NULL;
 
-    *l = (ted4_camera_list) { NULL, 0 };
+    *l = (ted4_camera_list) { 0 };
     if (list == NULL)
         return -1;
     if (json_is_array(json_object_get(list, "frames"))) {
@@ -160,7 +162,7 @@ int ted4_camera_list_load(ted4_camera_list *l, const char *path, char *why, size
 void ted4_camera_list_free(ted4_camera_list *l)
 {
     free(l->camera);
-    *l = (ted4_camera_list) { NULL, 0 };
+    *l = (ted4_camera_list) { 0 };
 }
 
 static json_t *numbers(const float *v, int n)

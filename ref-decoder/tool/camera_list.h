@@ -24,7 +24,11 @@ typedef struct {
 typedef struct {
     ted4_listed_camera *camera; /* owned */
     size_t n;
+    int distorted; /* 1: the file says that lenses are distorted, which the views are not */
 } ted4_camera_list;
+
+/* What to say of a list that is distorted. */
+#define TED4_CAMERA_LIST_DISTORTED "lens distortion is left out: cameras become those of a pinhole"
 
 /* Returns 0, or -1 with why filled and the list empty. */
 int ted4_camera_list_load(ted4_camera_list *l, const char *path, char *why, size_t why_size);

@@ -8,6 +8,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "camera_lens.h"
 #include "output.h"
 #include "rotation.h"
 
@@ -93,33 +94,14 @@ static int is_side(double v)
     return v >= 1.0 && v <= MAX_SIDE && v == floor(v);
 }
 
-static const char *get_lens(const transforms *t, const json_t *frame, ted4_view *v)
+static const char *get_lens(const transforms *t, const json_t *frame, ted4_view *v, int *distorted)
 {
-    double w, h, fx, fy, cx, cy, angle;
+    double w, h;
 
     if (!find_size(t, frame, &w, &h) || !is_side(w) || !is_side(h))
         return "needs w and h, whole numbers from 1 to 16384, or its picture as PNG";
-    if (!find_number(t, frame, "fl_x", &fx)) {
-        if (!find_number(t, frame, "camera_angle_x", &angle) || !(angle > 0.0 && angle < 3.14))
-            return "needs fl_x or camera_angle_x";
-        fx = w / 2 / tan(angle / 2);
-    }
-    if (!find_number(t, frame, "fl_y", &fy))
-        fy = fx;
-    if (!find_number(t, frame, "cx", &cx))
-        cx = w / 2;
-    if (!find_number(t, frame, "cy", &cy))
-        cy = h / 2;
-    *v = (ted4_view) { .width = (int)w,
-                       .height = (int)h,
-                       .fx = (float)fx,
-                       .fy = (float)fy,
-                       .cx = (float)cx,
-                       .cy = (float)cy };
-    return isfinite(v->fx) && isfinite(v->fy) && v->fx > 0.0f && v->fy > 0.0f && isfinite(v->cx) &&
-                   isfinite(v->cy)
-               ? NULL
-               : "needs focal lengths above 0";
+    *v = (ted4_view) { .width = (int)w, .height = (int)h };
+    return ted4_camera_lens(t->file, frame, v, distorted);
 }
 
 /* Undoes the similarity of the writer: x = A^T (y - a) / s^2, for a point, or (without a) a
@@ -163,7 +145,9 @@ static const char *get_pose(const transforms *t, const json_t *frame, ted4_view 
     for (int i = 0; i < 3; i++)
         if (!isfinite(v->t[i]))
             return "is too far away";
-    return ted4_is_rotation(v->R) ? NULL : "has a transform_matrix that is no rotation";
+    if (!ted4_is_rotation(v->R))
+        return "has a transform_matrix that is no rotation";
+    return ted4_is_mirrored(v->R) ? "has a transform_matrix that is a mirror image" : NULL;
 }
 
 static const char *get_time(const json_t *frame, ted4_listed_camera *c)
@@ -213,7 +197,7 @@ int ted4_transforms_read(const json_t *file, const char *path, ted4_camera_list 
         const json_t *const frame = json_array_get(frames, l->n);
         ted4_listed_camera *const c = &l->camera[l->n];
 
-        wrong = get_lens(&t, frame, &c->view);
+        wrong = get_lens(&t, frame, &c->view, &l->distorted);
         if (wrong == NULL)
             wrong = get_pose(&t, frame, &c->view);
         if (wrong == NULL)

@@ -9,8 +9,9 @@
 #include "camera_list.h"
 
 /* Reads the frames of a transforms file into the empty list *l. file: its JSON object; path: its
- * name, from where pictures are found that tell a missing size. Lens distortion is not looked at.
- * Returns 0, or -1 with why filled; *l must be freed in both cases. */
+ * name, from where pictures are found that tell a missing size. l->distorted says whether a lens
+ * is. Times are fractions of the scene as they are. Returns 0, or -1 with why filled; *l must be
+ * freed in both cases. */
 int ted4_transforms_read(const json_t *file, const char *path, ted4_camera_list *l, char *why,
                          size_t why_size);
 

@@ -24,7 +24,7 @@ int ted4_file_cameras(const uint8_t *file, size_t size, ted4_cams_kind kind, ted
     ted4_chunk_view chunk;
     ted4_cams c, found = { .n = 0 };
 
-    *l = (ted4_camera_list) { NULL, 0 };
+    *l = (ted4_camera_list) { 0 };
     for (size_t at = TED4_FILE_HEADER; ted4_chunks_next(file, size, &at, &chunk);)
         if (strcmp(chunk.type, "CAMS") == 0 && ted4_cams_read(chunk.payload, chunk.size, &c) == 0 &&
             c.kind == kind && c.n > 0)

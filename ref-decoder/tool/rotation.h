@@ -26,4 +26,19 @@ static inline int ted4_is_rotation(const float R[9])
     return 1;
 }
 
+/* Returns 1 if R, for which ted4_is_rotation returns 1, is a mirror image of a rotation: the chunk
+ * CAMS may hold one, but a camera that somebody describes is none. */
+static inline int ted4_is_mirrored(const float R[9])
+{
+    double determinant = 0.0;
+
+    for (int i = 0; i < 3; i++) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+
+        determinant += (double)R[i] *
+                       ((double)R[3 + j] * (double)R[6 + k] - (double)R[3 + k] * (double)R[6 + j]);
+    }
+    return determinant < 0.0;
+}
+
 #endif

@@ -83,7 +83,8 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
                      "%d, or as a video FILE.mp4, with the program ffmpeg" },
     [OPT_CAMERA] = { 0, "camera", "FILE.json",
                      "list of {width, height, fx, fy, cx, cy, R[9], t[3], frame or time}, a "
-                     "transforms_*.json, or the word file: the cameras of FILE.ted4" },
+                     "transforms_*.json, whose times are fractions of the scene, or the word file: "
+                     "the cameras of FILE.ted4" },
     [OPT_ORBIT] = { 0, "orbit", "N",
                     "N cameras around the scene, or to and fro where the cameras of FILE.ted4 "
                     "stand, while it plays once" },

@@ -28,15 +28,19 @@ static int no_memory(const ted4_session *s)
 }
 
 /* Loads cameras of a JSON file; or, if its name is "file", those of a kind of the scene's file. */
-static int load(const ted4_session *s, const char *name, ted4_cams_kind kind, ted4_camera_list *l)
+static int load(ted4_session *s, const char *name, ted4_cams_kind kind, ted4_camera_list *l)
 {
     char why[256];
 
-    *l = (ted4_camera_list) { NULL, 0 };
-    if (strcmp(name, "file") != 0)
-        return ted4_camera_list_load(l, name, why, sizeof why) == 0
-                   ? TED4_EXIT_FINE
-                   : ted4_session_refused(name, why);
+    *l = (ted4_camera_list) { 0 };
+    if (strcmp(name, "file") != 0) {
+        if (ted4_camera_list_load(l, name, why, sizeof why) != 0)
+            return ted4_session_refused(name, why);
+        s->warned |= l->distorted;
+        if (l->distorted)
+            fprintf(stderr, "ted4dec: warning: %s: %s\n", name, TED4_CAMERA_LIST_DISTORTED);
+        return TED4_EXIT_FINE;
+    }
     if (ted4_file_cameras(s->data, s->size, kind, l) != 0)
         return no_memory(s);
     return l->n > 0 ? TED4_EXIT_FINE

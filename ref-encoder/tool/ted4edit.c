@@ -205,6 +205,19 @@ static void drop_cameras(ted4_edit *e, ted4_cams_kind kind, float up[3])
     }
 }
 
+/* Says what of a list the chunk does not hold. */
+static void warn_of_list(const ted4_camera_list *l, const char *file)
+{
+    int pixel = 0;
+
+    for (size_t i = 0; i < l->n; i++)
+        pixel |= l->camera[i].view.pixel != 0.0f;
+    if (pixel)
+        fprintf(stderr, "ted4edit: warning: %s: the member pixel is left out\n", file);
+    if (l->distorted)
+        fprintf(stderr, "ted4edit: warning: %s: %s\n", file, TED4_CAMERA_LIST_DISTORTED);
+}
+
 static int add_cameras(ted4_edit *e, const settings *s, const ted4_info *info, const char *file,
                        ted4_cams_kind kind)
 {
@@ -215,6 +228,7 @@ static int add_cameras(ted4_edit *e, const settings *s, const ted4_info *info, c
 
     if (ted4_camera_list_load(&list, file, why, sizeof why) != 0)
         return failed(file, why);
+    warn_of_list(&list, file);
     drop_cameras(e, kind, up);
 
     uint8_t *payload = ted4_describe_listed(&list, info->frames, kind, s->has_up ? s->up : up,

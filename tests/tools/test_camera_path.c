@@ -39,7 +39,7 @@ static void test_between(void **state)
 {
     ted4_listed_camera keys[KEYS] = { key(0.0, 0.0, 80), key(TURN / 4, 1.0, 40),
                                       key(TURN / 2, 2.0, 80) };
-    const ted4_camera_list l = { keys, KEYS };
+    const ted4_camera_list l = { .camera = keys, .n = KEYS };
     ted4_view v[5];
     double centre[3];
 
@@ -61,7 +61,7 @@ static void test_between(void **state)
     /* One picture, or one key: the first key. */
     ted4_path_between(&l, 1, v);
     near((double)v[0].R[0], 1.0, 1e-6);
-    ted4_path_between(&(ted4_camera_list) { keys, 1 }, 3, v);
+    ted4_path_between(&(ted4_camera_list) { .camera = keys, .n = 1 }, 3, v);
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 9; k++)
             near((double)v[i].R[k], (double)keys[0].view.R[k], 1e-6);
@@ -97,7 +97,7 @@ static void test_orbit(void **state)
 {
     ted4_orbit o = { { 1, -2, 3 }, { 0, 0.6, 0.8 }, { 1, 0, 0 }, 0.0, 4.0, 1.5, { .width = 8 } };
     ted4_listed_camera list[12];
-    const ted4_camera_list l = { list, 12 };
+    const ted4_camera_list l = { .camera = list, .n = 12 };
     ted4_orbit found = { .up = { 0, 0.6, 0.8 } };
     ted4_view v[12];
 
@@ -131,14 +131,15 @@ static void test_no_pivot(void **state)
     double centre[3];
 
     (void)state;
-    assert_int_equal(ted4_orbit_pivot(&(ted4_camera_list) { keys, KEYS }, centre), -1);
+    assert_int_equal(ted4_orbit_pivot(&(ted4_camera_list) { .camera = keys, .n = KEYS }, centre),
+                     -1);
     keys[0] = key(0.3, 0.0, 80); /* axes that meet behind the cameras */
     keys[2] = key(-0.3, 2.0, 80);
-    const int one = ted4_orbit_pivot(&(ted4_camera_list) { keys, KEYS }, centre);
+    const int one = ted4_orbit_pivot(&(ted4_camera_list) { .camera = keys, .n = KEYS }, centre);
 
     keys[0] = key(-0.3, 0.0, 80);
     keys[2] = key(0.3, 2.0, 80);
-    const int other = ted4_orbit_pivot(&(ted4_camera_list) { keys, KEYS }, centre);
+    const int other = ted4_orbit_pivot(&(ted4_camera_list) { .camera = keys, .n = KEYS }, centre);
 
     assert_int_equal(one + other, -1);
 }

@@ -65,6 +65,12 @@ refuse no_list 'ted4edit: ' --cameras "$out/view0.png"
 sed 's/"frame":3/"frame":4/' "$out/path.json" >"$out/late.json"
 refuse late_frame "ted4edit: $out/late.json: camera 0: frame 4, but the scene has 4" \
     --cameras "$out/late.json"
+sed 's/0,0,0,1\]/0,0,0,-1]/' "$out/path.json" >"$out/mirror.json"
+refuse mirror "ted4edit: $out/mirror.json: camera 0 has an R that is a mirror image" \
+    --cameras "$out/mirror.json"
+sed 's/"fx"/"pixel":2,"fx"/' "$out/path.json" >"$out/pixel.json"
+expect no_pixel 0 "ted4edit: warning: $out/pixel.json: the member pixel is left out" \
+    "$TED4_BUILD/ted4edit" "$out/plain.ted4" -o "$out/pixel.ted4" --path "$out/pixel.json"
 expect exists 3 "ted4edit: $out/some.ted4: exists; -f overwrites" "$TED4_BUILD/ted4edit" \
     "$out/plain.ted4" -o "$out/some.ted4"
 head -c 1000 "$out/plain.ted4" >"$out/cut.ted4"

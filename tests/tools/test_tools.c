@@ -333,6 +333,15 @@ static void test_cameras(void **state)
             " && ted4dec v1.ted4 --render t_%%d.png -f --camera ./bare.json && "
             "cmp t_2.png view_2.png"),
         0);
+    /* Distortion is left out, with a warning; a lens that is not perspective is refused. */
+    assert_int_equal(run("sed 's/\"fl_x\"/\"k1\": 0.1, \"fl_x\"/' transforms.json >bent.json && "
+                         "ted4dec v1.ted4 --render t_%%d.png -f --camera bent.json"),
+                     2);
+    assert_int_equal(run("cmp t_2.png view_2.png"), 0);
+    assert_int_equal(
+        run("sed 's/\"fl_x\"/\"is_fisheye\": true, \"fl_x\"/' transforms.json >eye.json;"
+            " ted4dec v1.ted4 --render t_%%d.png -f --camera eye.json"),
+        3);
     assert_int_equal(run("ted4edit v1.ted4 -o c.ted4 --cameras cameras.json --path cameras.json && "
                          "ted4dec c.ted4 --render t_%%d.png -f --camera file && "
                          "cmp t_1.png view_1.png && ted4info c.ted4 --cameras >list.json && "
