@@ -185,5 +185,5 @@ int main(int argc, char **argv)
         return complain("usage", "ted4tolerance judge FILE.ted4 QUERIES.json FOLDER | table "
                                  "ID.json... (see --help)");
     }
-    return fflush(stdout) != 0 ? TED4_EXIT_TOOL : code;
+    return ted4_cli_end("ted4tolerance", code);
 }

@@ -13,6 +13,7 @@
 #include "run.h"
 #include "ted4.h"
 #include "tool/arguments.h"
+#include "tool/cli.h"
 #include "tool/threads.h"
 
 enum { USAGE = 3 };
@@ -417,7 +418,7 @@ static void help(FILE *f)
         fprintf(f, "  %-8s %s\n", commands[i].name, commands[i].text);
 }
 
-int main(int argc, char **argv)
+static int dispatch(int argc, char **argv)
 {
     if (argc < 2 || strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0) {
         help(argc < 2 ? stderr : stdout);
@@ -431,4 +432,9 @@ int main(int argc, char **argv)
         if (strcmp(argv[1], commands[i].name) == 0)
             return commands[i].run(argc - 1, argv + 1);
     return usage("no such command");
+}
+
+int main(int argc, char **argv)
+{
+    return ted4_cli_end("ted4conf", dispatch(argc, argv));
 }

@@ -4,7 +4,6 @@
 
 #include <inttypes.h>
 #include <stdio.h>
-#include <unistd.h>
 
 #include "base/bytes.h"
 #include "cli.h"
@@ -20,7 +19,7 @@ static int check_free(const char *pattern, uint32_t number)
         return TED4_EXIT_FINE;
     if (ted4_pattern_make(path, pattern, number) != 0)
         return ted4_session_refused(pattern, "name too long");
-    if (access(path, F_OK) == 0)
+    if (ted4_output_exists(path))
         return ted4_session_refused(path, "exists; -f overwrites");
     return TED4_EXIT_FINE;
 }

@@ -38,16 +38,15 @@ static void make_getopt(const ted4_command *c, struct option *longs, char *lette
 
 static int answer(const ted4_command *c, int i)
 {
-    if (c->table[i].letter == 'h') {
+    if (c->table[i].letter == 'h')
         ted4_arguments_help(c, stdout);
-        return TED4_ARGUMENTS_DONE;
-    }
-    if (c->table[i].letter == 'V') {
+    else if (c->table[i].letter == 'V')
         printf("%s " TED4_VERSION " (specification " TED4_SPEC_VERSION "), kernels %s\n",
                c->program, ted4_level_name(ted4_level_wanted()));
-        return TED4_ARGUMENTS_DONE;
-    }
-    return i;
+    else
+        return i;
+    return ted4_cli_end(c->program, TED4_EXIT_FINE) == TED4_EXIT_FINE ? TED4_ARGUMENTS_DONE
+                                                                      : TED4_ARGUMENTS_BAD;
 }
 
 /* Returns 0 if the machine can run the kernels that TED4_KERNEL names, or if it is not set; else
@@ -85,6 +84,7 @@ int ted4_arguments_next(const ted4_command *c, int argc, char **argv, const char
     struct option longs[TED4_MAX_ARGUMENTS + 1];
     char letters[2 * TED4_MAX_ARGUMENTS + 1];
 
+    ted4_cli_begin();
     make_getopt(c, longs, letters);
     const int found = getopt_long(argc, argv, letters, longs, NULL);
 

@@ -42,8 +42,8 @@ enum { TED4_ARGUMENTS_END = -1, TED4_ARGUMENTS_BAD = -2, TED4_ARGUMENTS_DONE = -
 /* Returns the index in the table of the next option of the command line, and sets *value (NULL if
  * the option takes none). Otherwise returns TED4_ARGUMENTS_END if only operands are left, from
  * argv[optind] on; TED4_ARGUMENTS_DONE if the help text or the version was printed; or
- * TED4_ARGUMENTS_BAD, after a message on stderr, if an option is unknown, a value is missing, or
- * TED4_KERNEL names kernels that this machine cannot run. */
+ * TED4_ARGUMENTS_BAD, after a message on stderr, if an option is unknown, a value is missing, the
+ * text cannot be printed, or TED4_KERNEL names kernels that this machine cannot run. */
 int ted4_arguments_next(const ted4_command *c, int argc, char **argv, const char **value);
 void ted4_arguments_help(const ted4_command *c, FILE *f);
 

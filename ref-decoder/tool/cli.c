@@ -4,8 +4,23 @@
 
 #include <errno.h>
 #include <jansson.h>
+#include <signal.h>
 #include <stdio.h>
 #include <string.h>
+
+void ted4_cli_begin(void)
+{
+    signal(SIGXFSZ, SIG_IGN);
+}
+
+int ted4_cli_end(const char *program, int code)
+{
+    errno = 0;
+    if (fflush(stdout) == 0 && !ferror(stdout))
+        return code;
+    fprintf(stderr, "%s: standard output: %s\n", program, strerror(errno != 0 ? errno : EIO));
+    return TED4_EXIT_TOOL;
+}
 
 static void print_json(const char *path, const ted4_error *e, const char *text)
 {

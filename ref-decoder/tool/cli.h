@@ -1,5 +1,5 @@
-/* cli.h - functions that all programs share: reading a file, and reporting why a stream was
- * refused.
+/* cli.h - functions that all programs share: beginning and end, reading a file, and reporting
+ * why a stream was refused.
  * Exit codes: 0 success; 1 the stream was refused; 2 success with warnings; 3 wrong usage, failed
  * input or output, or too few resources.
  * SPDX-License-Identifier: BSD-2-Clause */
@@ -13,6 +13,14 @@
 #include "base/status.h"
 
 enum { TED4_EXIT_FINE = 0, TED4_EXIT_REFUSED = 1, TED4_EXIT_WARNED = 2, TED4_EXIT_TOOL = 3 };
+
+/* Called by a program before it writes anything: ted4_arguments_next does so. From then on a file
+ * that reaches the limit of file sizes (ulimit -f) is an error of output, as on a full disk, for
+ * this process and its children; by itself, the system would end the process. */
+void ted4_cli_begin(void);
+/* Called when everything has been printed. Returns code; or TED4_EXIT_TOOL, after a message, if
+ * standard output could not take it all. */
+int ted4_cli_end(const char *program, int code);
 
 /* read_file.c: reads a whole file, or standard input if path is "-". Returns a buffer from malloc
  * that the caller frees, or NULL with errno set. */

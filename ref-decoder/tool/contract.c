@@ -319,6 +319,7 @@ int ted4_contract(int argc, char **argv)
 {
     request r;
 
+    ted4_cli_begin();
     if (argc == 2 && strcmp(argv[1], "--ted4-capabilities") == 0)
         return print(capabilities());
     return parse(&r, argc, argv) == 0 ? answer_run(&r)

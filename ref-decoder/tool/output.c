@@ -1,11 +1,15 @@
 /* output.c - see output.h.
  * SPDX-License-Identifier: BSD-2-Clause */
+#define _XOPEN_SOURCE 700 /* realpath() */
 #include "output.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <inttypes.h>
+#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "leftovers.h"
@@ -21,17 +25,52 @@ static int name_temporary(char out[TED4_PATH_SIZE], const char *path)
     return -1;
 }
 
+/* Finds the place of a file: where links at path lead if there is something, otherwise path.
+ * Returns 0, or -1 with errno set. */
+static int find_place(char place[TED4_PATH_SIZE], const char *path)
+{
+    char *const real = access(path, F_OK) == 0 ? realpath(path, NULL) : NULL;
+    const int n = snprintf(place, TED4_PATH_SIZE, "%s", real != NULL ? real : path);
+
+    free(real);
+    if (n >= 0 && n < TED4_PATH_SIZE)
+        return 0;
+    errno = ENAMETOOLONG;
+    return -1;
+}
+
+/* Creates a file that will replace the one at place, with the same mode. Returns NULL with errno
+ * set if it cannot be created. */
+static FILE *create(const char *temporary, const char *place)
+{
+    struct stat there;
+    const int replaces = stat(place, &there) == 0 && S_ISREG(there.st_mode);
+    const int fd = open(temporary, O_WRONLY | O_CREAT | O_TRUNC, replaces ? 0600 : 0666);
+
+    if (fd < 0)
+        return NULL;
+    if (replaces)
+        (void)fchmod(fd, there.st_mode & 0777); /* a file system may have no modes */
+    return fdopen(fd, "wb");
+}
+
 int ted4_output_open(ted4_output *o, const char *path)
 {
-    if (name_temporary(o->temporary, path) != 0)
+    if (find_place(o->path, path) != 0 || name_temporary(o->temporary, o->path) != 0)
         return -1;
-    memcpy(o->path, path, strlen(path) + 1);
     ted4_leftovers_add(o->temporary, 0);
-    o->file = fopen(o->temporary, "wb");
+    o->file = create(o->temporary, o->path);
     if (o->file != NULL)
         return 0;
     ted4_leftovers_forget(o->temporary);
     return -1;
+}
+
+int ted4_output_exists(const char *path)
+{
+    struct stat there;
+
+    return lstat(path, &there) == 0;
 }
 
 static void discard(const char *temporary)

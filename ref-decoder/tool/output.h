@@ -15,10 +15,14 @@ typedef struct {
     char path[TED4_PATH_SIZE], temporary[TED4_PATH_SIZE];
 } ted4_output;
 
-/* Opens a temporary file next to path. Returns 0, or -1 with errno set. */
+/* Returns 1 if there is something at path, be it a link that leads nowhere. */
+int ted4_output_exists(const char *path);
+
+/* Opens a temporary file next to path; where path is a link to a file, next to that file. It has
+ * the mode of the file that it will replace. Returns 0, or -1 with errno set. */
 int ted4_output_open(ted4_output *o, const char *path);
-/* Flushes and closes the temporary file and renames it to path, replacing an existing file. Returns
- * 0, or -1 with errno set and the temporary file removed. */
+/* Flushes and closes the temporary file and gives it its name, replacing an existing file but not
+ * a link to it. Returns 0, or -1 with errno set and the temporary file removed. */
 int ted4_output_close(ted4_output *o);
 /* Closes and removes the temporary file. errno is preserved. */
 void ted4_output_cancel(ted4_output *o);

@@ -1,6 +1,5 @@
 /* ted4dec.c - decodes a .ted4 file: checks it, exports its Gaussians for viewers, renders views.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <errno.h>
 #include <getopt.h>
 #include <inttypes.h>
 #include <stdio.h>
@@ -401,9 +400,5 @@ int main(int argc, char **argv)
 
         worst = code > worst ? code : worst;
     }
-    if (fflush(stdout) != 0 || ferror(stdout)) {
-        fprintf(stderr, "ted4dec: standard output: %s\n", strerror(errno));
-        return TED4_EXIT_TOOL;
-    }
-    return worst;
+    return ted4_cli_end("ted4dec", worst);
 }

@@ -1,6 +1,5 @@
 /* ted4info.c - prints the contents of a .ted4 file, and how many bytes each syntax element takes.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <errno.h>
 #include <getopt.h>
 #include <inttypes.h>
 #include <jansson.h>
@@ -454,9 +453,5 @@ int main(int argc, char **argv)
 
         worst = code > worst ? code : worst;
     }
-    if (fflush(stdout) != 0 || ferror(stdout)) {
-        fprintf(stderr, "ted4info: standard output: %s\n", strerror(errno));
-        return TED4_EXIT_TOOL;
-    }
-    return worst;
+    return ted4_cli_end("ted4info", worst);
 }

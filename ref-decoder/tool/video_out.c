@@ -6,6 +6,7 @@
 #include <fcntl.h>
 #include <inttypes.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -41,26 +42,28 @@ int ted4_video_out_open(ted4_video_out *v, const char *path, int width, int heig
     snprintf(rate, sizeof rate, "%" PRIu32 "/%" PRIu32, rate_num, rate_den);
     v->broken = 0;
     v->bytes = (size_t)width * (size_t)height * 3;
-    if (snprintf(v->path, sizeof v->path, "%s", path) >= (int)sizeof v->path - 32) {
-        snprintf(why, why_size, "name too long");
+    if (ted4_output_open(&v->file, path) != 0) {
+        snprintf(why, why_size, "%s", strerror(errno));
         return -1;
     }
-    snprintf(v->temporary, sizeof v->temporary, "%s.%ld.part", path, (long)getpid());
     /* "file:": no name is taken for an option or a protocol. */
-    snprintf(to, sizeof to, "file:%s", v->temporary);
+    snprintf(to, sizeof to, "file:%s", v->file.temporary);
     v->messages = tmpfile();
     if (v->messages == NULL || pipe(ends) != 0) {
         snprintf(why, why_size, "%s", strerror(errno));
         if (v->messages != NULL)
             fclose(v->messages);
+        ted4_output_cancel(&v->file);
         return -1;
     }
     (void)fcntl(ends[1], F_SETFD, FD_CLOEXEC);
     v->child = fork();
     if (v->child == 0)
         become_ffmpeg(size, rate, to, ends[0], fileno(v->messages));
-    if (v->child > 0)
-        ted4_leftovers_add(v->temporary, v->child);
+    if (v->child > 0) {
+        ted4_leftovers_forget(v->file.temporary);
+        ted4_leftovers_add(v->file.temporary, v->child);
+    }
     close(ends[0]);
     v->pipe = ends[1];
     return 0;
@@ -92,6 +95,13 @@ static void first_words(FILE *messages, char *text, size_t size)
     text[n] = '\0';
 }
 
+static int is_empty(const char *path)
+{
+    struct stat there;
+
+    return stat(path, &there) != 0 || there.st_size == 0;
+}
+
 int ted4_video_out_close(ted4_video_out *v, int keep, char *why, size_t why_size)
 {
     char words[200];
@@ -107,12 +117,13 @@ int ted4_video_out_close(ted4_video_out *v, int keep, char *why, size_t why_size
         snprintf(why, why_size, "videos need the program ffmpeg, which cannot be started");
     else if (bad)
         snprintf(why, why_size, "ffmpeg failed%s%s", words[0] != '\0' ? ": " : "", words);
-    if (!bad && keep && rename(v->temporary, v->path) != 0) {
+    else if ((bad = keep && is_empty(v->file.temporary)))
+        snprintf(why, why_size, "ffmpeg wrote nothing");
+    if (bad || !keep) {
+        ted4_output_cancel(&v->file);
+    } else if (ted4_output_close(&v->file) != 0) {
         snprintf(why, why_size, "%s", strerror(errno));
         bad = 1;
     }
-    if (bad || !keep)
-        remove(v->temporary);
-    ted4_leftovers_forget(v->temporary);
     return bad ? -1 : 0;
 }

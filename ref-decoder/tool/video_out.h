@@ -14,10 +14,10 @@
 typedef struct {
     int pipe; /* to ffmpeg: raw pictures */
     pid_t child;
-    FILE *messages; /* what ffmpeg says; owned */
-    size_t bytes;   /* of a picture */
-    int broken;     /* 1: a picture could not be written */
-    char path[TED4_PATH_SIZE], temporary[TED4_PATH_SIZE];
+    FILE *messages;   /* what ffmpeg says; owned */
+    size_t bytes;     /* of a picture */
+    int broken;       /* 1: a picture could not be written */
+    ted4_output file; /* ffmpeg writes its temporary file, too */
 } ted4_video_out;
 
 /* Starts ffmpeg for pictures of width x height pixels, rate_num / rate_den per second. Odd sizes

@@ -413,8 +413,6 @@ int ted4_encoder_main(int argc, char **argv, ted4_exchange *x)
         status = r.transcode != NULL ? transcode(&e) : work(&e);
         ted4_threads_finish(&p);
     }
-    if (fflush(stdout) != 0 || ferror(stdout))
-        status = complain(&e, "standard output cannot be written");
     ted4_teller_end(&teller);
-    return status;
+    return ted4_cli_end("ted4enc", status);
 }

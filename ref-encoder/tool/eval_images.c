@@ -7,13 +7,16 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include "moving_pixels.h"
 #include "render/png_file.h"
 #include "sheet.h"
+#include "tool/output.h"
 
-enum { PATH_SIZE = 4096 };
+enum { TRUTH, OURS, ERROR, MOVING, N_KINDS };
+static const char *const kinds[N_KINDS] = {
+    [TRUTH] = "truth", [OURS] = "ours", [ERROR] = "error", [MOVING] = "moving"
+};
 
 /* Returns -1, with "what: why" in *m. */
 static int failed(ted4_message *m, const char *what, const char *why)
@@ -25,19 +28,46 @@ static int failed(ted4_message *m, const char *what, const char *why)
     return -1;
 }
 
+static int make_folder(const char *path, ted4_message *m)
+{
+    return mkdir(path, 0777) == 0 || errno == EEXIST ? 0 : failed(m, path, strerror(errno));
+}
+
+/* Makes the name of a picture. Returns 0, or -1 with *m filled. */
+static int name_one(char path[TED4_PATH_SIZE], const ted4_eval_images *to, const char *kind,
+                    ted4_message *m)
+{
+    const int n = snprintf(path, TED4_PATH_SIZE, "%s/%s/%05zu.png", to->folder, kind, to->number);
+
+    return n > 0 && n < TED4_PATH_SIZE ? 0 : failed(m, to->folder, "name too long");
+}
+
+int ted4_eval_images_begin(const char *folder, size_t n, int moving, int overwrite, ted4_message *m)
+{
+    for (size_t k = 0; k < N_KINDS - !moving; k++) {
+        for (size_t i = 0; i < n; i++) {
+            const ted4_eval_images to = { folder, i };
+            char path[TED4_PATH_SIZE];
+
+            if (name_one(path, &to, kinds[k], m) != 0)
+                return -1;
+            if (!overwrite && ted4_output_exists(path))
+                return failed(m, path, "exists; -f overwrites");
+        }
+    }
+    return make_folder(folder, m);
+}
+
 static int write_one(const ted4_eval_images *to, const char *kind, const ted4_camera *c,
                      const uint8_t *rgb, ted4_message *m)
 {
-    char path[PATH_SIZE], why[256];
-    int n = snprintf(path, sizeof path, "%s/%s", to->folder, kind);
+    char path[TED4_PATH_SIZE], why[256];
 
-    if (n > 0 && n < PATH_SIZE && mkdir(path, 0777) != 0 && errno != EEXIST)
-        return failed(m, path, strerror(errno));
-    n = snprintf(path, sizeof path, "%s/%s/%05zu.png", to->folder, kind, to->number);
-    if (n < 0 || n >= PATH_SIZE)
-        return failed(m, to->folder, "name too long");
-    if (!to->overwrite && access(path, F_OK) == 0)
-        return failed(m, path, "exists; -f overwrites");
+    if (name_one(path, to, kind, m) != 0)
+        return -1;
+    *strrchr(path, '/') = '\0';
+    if (make_folder(path, m) != 0 || name_one(path, to, kind, m) != 0)
+        return -1;
     return ted4_png_write(path, c->width, c->height, rgb, why, sizeof why) == 0
                ? 0
                : failed(m, path, why);
@@ -54,14 +84,14 @@ int ted4_eval_images_write(const ted4_eval_images *to, const ted4_camera *c, con
     if (made == NULL)
         return failed(m, to->folder, "out of memory");
     ted4_sheet_error(truth, ours, 3 * pixels, made);
-    code = write_one(to, "truth", c, truth, m);
+    code = write_one(to, kinds[TRUTH], c, truth, m);
     if (code == 0)
-        code = write_one(to, "ours", c, ours, m);
+        code = write_one(to, kinds[OURS], c, ours, m);
     if (code == 0)
-        code = write_one(to, "error", c, made, m);
+        code = write_one(to, kinds[ERROR], c, made, m);
     if (code == 0 && median != NULL) {
         ted4_moving_add(&unused, median, truth, ours, pixels, made);
-        code = write_one(to, "moving", c, made, m);
+        code = write_one(to, kinds[MOVING], c, made, m);
     }
     free(made);
     return code;

@@ -7,10 +7,15 @@
 #include "data/dataset.h"
 
 typedef struct {
-    const char *folder; /* exists */
-    int overwrite;
+    const char *folder;
     size_t number; /* of the picture: it is named NNNNN.png */
 } ted4_eval_images;
+
+/* Makes the folder unless it is there, and unless overwrite is set, makes sure that none of the
+ * pictures 0 to n - 1 is in it. moving: their masks count as well. Returns 0, or -1 with *m
+ * filled. */
+int ted4_eval_images_begin(const char *folder, size_t n, int moving, int overwrite,
+                           ted4_message *m);
 
 /* Writes a picture to the folders truth, ours, and error (5 times the difference), and with a
  * median (moving_pixels.h; or else NULL) its mask to moving. truth, ours, median:

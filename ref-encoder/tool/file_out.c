@@ -20,15 +20,13 @@ int ted4_file_writable(const char *path, int force, char *why, size_t why_size)
         snprintf(why, why_size, "the output's name is empty");
         return -1;
     }
-    if (stat(path, &there) == 0) {
-        if (S_ISDIR(there.st_mode)) {
-            snprintf(why, why_size, "%s: is a folder, expected a file name", path);
-            return -1;
-        }
-        if (!force) {
-            snprintf(why, why_size, "%s: exists; -f overwrites", path);
-            return -1;
-        }
+    if (stat(path, &there) == 0 && S_ISDIR(there.st_mode)) {
+        snprintf(why, why_size, "%s: is a folder, expected a file name", path);
+        return -1;
+    }
+    if (!force && ted4_output_exists(path)) {
+        snprintf(why, why_size, "%s: exists; -f overwrites", path);
+        return -1;
     }
     if (ted4_output_open(&o, path) != 0) {
         snprintf(why, why_size, "%.200s: cannot be written: %s", path, strerror(errno));

@@ -1,16 +1,13 @@
 /* ted4eval.c - compares a .ted4 file with the pictures of its scene: quality, size and speed,
  * measured on the decoded file.
  * SPDX-License-Identifier: BSD-2-Clause */
-#include <errno.h>
 #include <getopt.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <time.h>
-#include <unistd.h>
 
 #include "align.h"
 #include "belongs.h"
@@ -222,7 +219,7 @@ static int parse(settings *s, int argc, char **argv)
     s->scene = argv[optind + 1];
     if (s->sheet != NULL && !ted4_has_suffix(s->sheet, ".png"))
         return failed(s->sheet, "--sheet writes .png only");
-    if (s->sheet != NULL && !s->force && access(s->sheet, F_OK) == 0)
+    if (s->sheet != NULL && !s->force && ted4_output_exists(s->sheet))
         return failed(s->sheet, "exists; -f overwrites");
     return -1;
 }
@@ -307,7 +304,7 @@ static int write_images(const session *s, size_t i, const uint8_t *truth, const 
 {
     const ted4_picture *const p = &s->data.pictures[i];
     const uint8_t *const median = s->median == NULL ? NULL : s->median[p->camera_id];
-    const ted4_eval_images to = { s->set->images, s->set->force, s->sum.views };
+    const ted4_eval_images to = { s->set->images, s->sum.views };
     ted4_message m;
 
     return ted4_eval_images_write(&to, &p->camera, truth, ours, median, &m) == 0 ? TED4_EXIT_FINE
@@ -534,8 +531,9 @@ static int evaluate(session *s)
         return failed(set->scene, set->want_test
                                       ? "no test pictures; --split train compares training pictures"
                                       : "no training pictures");
-    if (set->images != NULL && mkdir(set->images, 0777) != 0 && errno != EEXIST)
-        return failed(set->images, strerror(errno));
+    if (set->images != NULL &&
+        ted4_eval_images_begin(set->images, n, set->moving, set->force, &m) != 0)
+        return complain(m.text);
     if (set->sheet != NULL)
         code = choose_rows(s);
     if (code == TED4_EXIT_FINE && set->colours)
@@ -590,7 +588,5 @@ int main(int argc, char **argv)
     ted4_recon_free(s.recon);
     ted4_threads_finish(&s.parallel);
     ted4_teller_end(&teller);
-    if (fflush(stdout) != 0 || ferror(stdout))
-        return failed("standard output", strerror(errno));
-    return code;
+    return ted4_cli_end("ted4eval", code);
 }

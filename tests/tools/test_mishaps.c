@@ -226,7 +226,7 @@ static void test_full_stdout(void **state)
     close(full);
     assert_int_equal(status, 3);
     assert_int_equal(checked, 3);
-    expect_words("standard output cannot be written");
+    expect_words("standard output: No space left on device");
     gone("out/x.ted4");
 }
 

@@ -48,6 +48,7 @@ expect fails 3 'b.mp4: ffmpeg failed: Unknown encoder' "$dec" "$vector" --render
     --camera "$out/two.json"
 FAIL=2
 expect early 3 'b.mp4: ' "$dec" "$vector" --render "$out/b.mp4" --path "$out/two.json" --views 9000
+expect nothing 3 'b.mp4: ' "$dec" "$vector" --render "$out/b.mp4" --camera "$out/two.json"
 mkdir "$out/none"
 PATH=$path
 expect missing 3 'videos need the program ffmpeg' env PATH="$out/none" "$dec" "$vector" \
@@ -72,6 +73,19 @@ equal killed "$?" 143
 equal no_half "$(ls "$out" | grep -c '^k.mp4')" 0
 if kill -0 "$(cat "$out/writer")" 2>/dev/null; then fail no_writer "ffmpeg goes on"
 else ok no_writer; fi
+
+# A video that is replaced keeps its mode, and the link to it.
+FAIL=0
+cat >"$out/bin/ffmpeg" <<'END'
+#!/bin/sh
+for last; do :; done
+cat >/dev/null
+echo video >"${last#file:}"
+END
+chmod 600 "$out/a.mp4"
+ln -s a.mp4 "$out/l.mp4"
+PATH=$out/bin:$path "$dec" "$vector" --render "$out/l.mp4" --camera "$out/two.json" -f
+equal link "$(readlink "$out/l.mp4") $(ls -l "$out/a.mp4" | cut -c 1-10)" "a.mp4 -rw-------"
 
 if command -v ffmpeg >/dev/null; then
     "$dec" "$vector" --render "$out/real.mp4" --path "$out/two.json" --views 12 -q

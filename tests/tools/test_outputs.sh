@@ -1,0 +1,106 @@
+#!/bin/sh
+# test_outputs.sh - files that programs write: where they must not grow, no unfinished one stays and
+# the message says why; one that is replaced keeps its mode and the links to it; a full standard
+# output is an error also of a help text. Prints lines as a cmocka program does; run by `make test`
+# from the project's root.
+# SPDX-License-Identifier: BSD-2-Clause
+set -u
+export LC_ALL=C
+. tests/support/speak.sh
+need outputs ted4enc ted4dec ted4edit ted4eval ted4info ted4scene ted4conf ted4tolerance
+# equal NAME VALUE WANTED
+equal() { if [ "$2" = "$3" ]; then ok "$1"; else fail "$1" "$2, expected $3"; fi; }
+bin=$TED4_BUILD
+scene=$out/scene
+small="--preset draft --iterations 60,40 --capacity fixed --seed 1 -j 1 -q --set init_anchors=150
+    --set max_anchors=260 --set offsets=4 --set feature=8 --set phi=4 --set bank_dim=8
+    --set deform_width=8 --set head_width=12 --set hyper_width=16 --set ar_width=8 --set slices=2"
+"$bin/ted4scene" pop -o "$scene" --size 32x24 --frames 4 --cameras 5 --test-cameras 1 -j 1 \
+    2>/dev/null
+"$bin/ted4enc" "$scene" -o "$out/a.ted4" $small --cameras --thumbnail || fail encode "no file"
+mkdir "$out/at"
+
+# ---- a limit of file sizes: 1 KiB ----
+# full NAME COMMAND...: in the folder at, it says why, and leaves nothing.
+full() {
+    name=$1; shift
+    expect "full_$name" 3 'File too large' sh -c 'cd "$0" && ulimit -f 2 && "$@"' "$out/at" "$@"
+    left=$(ls -A "$out/at")
+    [ -z "$left" ] && ok "left_$name" || fail "left_$name" "$left"
+    rm -rf "$out/at"; mkdir "$out/at"
+}
+full edit "$bin/ted4edit" "$out/a.ted4" -o b.ted4 --title x
+full export "$bin/ted4dec" "$out/a.ted4" -o b%d.ply
+full encode "$bin/ted4enc" "$scene" -o b.ted4 $small
+full checkpoint "$bin/ted4enc" "$scene" -o b.ted4 $small --checkpoint c
+full stage1 "$bin/ted4enc" "$scene" -o b.ted4 $small --stage1 c
+full transcode "$bin/ted4enc" --transcode "$out/a.ted4" -o b.ted4
+echo '[{"t":[0,1],"cam":[0,0,0]}]' >"$out/q.json"
+# Their messages are those of libpng and of the scene maker; files before it stay.
+for name in render sheet scene contract; do
+    case $name in
+    render) set -- "$bin/ted4dec" "$out/a.ted4" --render b.png --camera file --time 0 ;;
+    sheet) set -- "$bin/ted4eval" "$out/a.ted4" "$scene" --sheet b.png ;;
+    scene) set -- "$bin/ted4scene" pop -o b --size 32x24 --frames 2 -j 1 ;;
+    contract) set -- "$bin/ted4dec" --ted4-run "$out/a.ted4" --tiers T5 --queries "$out/q.json" \
+        --dump . ;;
+    esac
+    [ $name = render ] && set -- "$bin/ted4dec" "$out/a.ted4" --render b.png --orbit 1
+    expect "full_$name" 3 ": " sh -c 'cd "$0" && ulimit -f 2 && "$@"' "$out/at" "$@"
+    find "$out/at" -name '*.tmp' -o -name '*.part' >"$out/said"
+    [ -s "$out/said" ] && fail "left_$name" "$(cat "$out/said")" || ok "left_$name"
+    rm -rf "$out/at"; mkdir "$out/at"
+done
+
+# ---- what is replaced ----
+mode() { ls -lL "$1" | cut -c 1-10; }
+cp "$out/a.ted4" "$out/at/m.ted4"
+chmod 600 "$out/at/m.ted4"
+ln -s m.ted4 "$out/at/link.ted4"
+(cd "$out/at" && umask 022 && "$bin/ted4edit" m.ted4 -o m.ted4 -f -q --title x)
+equal mode "$(mode "$out/at/m.ted4")" -rw-------
+(cd "$out/at" && umask 022 && "$bin/ted4edit" m.ted4 -o link.ted4 -f -q --title y)
+equal link_stays "$(readlink "$out/at/link.ted4")" m.ted4
+equal link_written "$("$bin/ted4info" "$out/at/m.ted4" | grep -c '^title=y$')" 1
+equal link_mode "$(mode "$out/at/m.ted4")" -rw-------
+chmod 640 "$out/at/m.ted4"
+(cd "$out/at" && umask 022 && "$bin/ted4enc" --transcode "$out/a.ted4" -o link.ted4 -f -q)
+equal mode_transcode "$(mode "$out/at/m.ted4")" -rw-r-----
+ln -s elsewhere/x.ply "$out/at/x.ply"
+chmod 600 "$out/at/m.ted4"
+(cd "$out/at" && ln -s m.raw x.raw && : >m.raw && chmod 600 m.raw &&
+    umask 022 && "$bin/ted4dec" "$out/a.ted4" -o x.raw --time 0 -f -q)
+equal export_link "$(readlink "$out/at/x.raw") $(mode "$out/at/m.raw")" "m.raw -rw-------"
+expect dangling_export 3 "x.ply: exists; -f overwrites" "$bin/ted4dec" "$out/a.ted4" \
+    -o "$out/at/x.ply" --time 0
+ln -s elsewhere/x.ted4 "$out/at/x.ted4"
+expect dangling_edit 3 "x.ted4: exists; -f overwrites" "$bin/ted4edit" "$out/a.ted4" \
+    -o "$out/at/x.ted4" --title x
+expect dangling_forced 0 "the scene is the same" "$bin/ted4edit" "$out/a.ted4" \
+    -o "$out/at/x.ted4" --title x -f
+[ -L "$out/at/x.ted4" ] && fail dangling_replaced "a link" || ok dangling_replaced
+ln -s elsewhere/x.png "$out/at/x.png"
+expect dangling_sheet 3 "x.png: exists; -f overwrites" "$bin/ted4eval" "$out/a.ted4" "$scene" \
+    --sheet "$out/at/x.png"
+
+# Nothing is drawn before it is known that all pictures can be written.
+mkdir -p "$out/images/error"
+: >"$out/images/error/00001.png"
+expect images 3 "00001.png: exists; -f overwrites" "$bin/ted4eval" "$out/a.ted4" "$scene" --images \
+    "$out/images"
+equal images_first "$(find "$out/images" -name '*.png' | wc -l | tr -d ' ')" 1
+
+# ---- standard output ----
+if [ -e /dev/full ]; then
+    for p in ted4enc ted4dec ted4info ted4edit ted4eval ted4scene ted4conf ted4tolerance; do
+        for o in --help --version; do
+            "$bin/$p" $o >/dev/full 2>"$out/err"
+            status=$?
+            equal "stdout_$p$o" "$status $(cat "$out/err")" \
+                "3 $p: standard output: No space left on device"
+        done
+    done
+else
+    skip stdout "there is no /dev/full"
+fi
+exit $bad
