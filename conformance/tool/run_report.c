@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "run.h"
+#include "tool/json_string.h"
 
 static const char *folder_of(const conf_entry *e)
 {
@@ -25,17 +26,18 @@ static json_t *counts(const conf_run_result *r)
 void conf_run_write_json(const conf_run_result *r)
 {
     json_t *list = json_array();
-    json_t *o = json_pack("{s:i, s:s, s:s, s:b, s:o, s:o*, s:o}", "schema", 1, "suite",
-                          CONF_SUITE_VERSION, "command", r->options->decoder, "conforms", r->passed,
-                          "counts", counts(r), "capabilities", json_incref(r->capabilities),
-                          "vectors", list);
+    json_t *o = json_pack("{s:i, s:s, s:o, s:b, s:o, s:o*, s:o}", "schema", 1, "suite",
+                          CONF_SUITE_VERSION, "command", ted4_json_string(r->options->decoder),
+                          "conforms", r->passed, "counts", counts(r), "capabilities",
+                          json_incref(r->capabilities), "vectors", list);
     char *text;
 
     for (size_t i = 0; i < r->n; i++)
-        json_array_append_new(list, json_pack("{s:s, s:s, s:s, s:s, s:f}", "id", r->entry[i].id,
-                                              "category", folder_of(&r->entry[i]), "outcome",
-                                              conf_outcome_name[r->verdict[i].outcome], "reason",
-                                              r->verdict[i].reason, "ms", r->ms[i]));
+        json_array_append_new(list,
+                              json_pack("{s:s, s:s, s:s, s:o, s:f}", "id", r->entry[i].id,
+                                        "category", folder_of(&r->entry[i]), "outcome",
+                                        conf_outcome_name[r->verdict[i].outcome], "reason",
+                                        ted4_json_string(r->verdict[i].reason), "ms", r->ms[i]));
     text = json_dumps(o, JSON_INDENT(1));
     if (text == NULL)
         conf_die("results that are no UTF-8");

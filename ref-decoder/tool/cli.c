@@ -8,6 +8,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "json_string.h"
+
 void ted4_cli_begin(void)
 {
     signal(SIGXFSZ, SIG_IGN);
@@ -24,11 +26,10 @@ int ted4_cli_end(const char *program, int code)
 
 static void print_json(const char *path, const ted4_error *e, const char *text)
 {
-    json_t *const name = json_string(path); /* NULL: not UTF-8 */
-    json_t *const o =
-        json_pack("{s:o, s:s, s:s, s:I, s:s}", "file", name != NULL ? name : json_null(), "verdict",
-                  ted4_verdict_name(ted4_status_verdict(e->code)), "error", ted4_status_id(e->code),
-                  "offset", (json_int_t)e->offset, "text", text);
+    json_t *const o = json_pack("{s:o, s:s, s:s, s:I, s:o}", "file", ted4_json_string(path),
+                                "verdict", ted4_verdict_name(ted4_status_verdict(e->code)), "error",
+                                ted4_status_id(e->code), "offset", (json_int_t)e->offset, "text",
+                                ted4_json_string(text));
 
     json_dumpf(o, stdout, JSON_COMPACT);
     putchar('\n');

@@ -7,6 +7,7 @@
 
 #include "actions.h"
 #include "cli.h"
+#include "json_string.h"
 #include "output.h"
 #include "sample.h"
 
@@ -76,9 +77,10 @@ static int export_time(ted4_session *s, const ted4_sampler *how, ted4_time t, ui
         code = ted4_session_refused(s->set->output, strerror(errno));
     else if (s->set->json)
         ted4_session_append(s->report, "exports",
-                            json_pack("{s:s, s:I, s:I, s:I, s:f}", "path", path, "num",
-                                      (json_int_t)t.num, "den", (json_int_t)t.den, "gaussians",
-                                      (json_int_t)sample.frame.n, "sh_rms", sample.sh_rms));
+                            json_pack("{s:o, s:I, s:I, s:I, s:f}", "path", ted4_json_string(path),
+                                      "num", (json_int_t)t.num, "den", (json_int_t)t.den,
+                                      "gaussians", (json_int_t)sample.frame.n, "sh_rms",
+                                      sample.sh_rms));
     if (code == TED4_EXIT_FINE && s->set->verbose)
         fprintf(stderr, "ted4dec: %s: %zu of %zu Gaussians, rms error of colours %.4f\n", path,
                 sample.frame.n, s->info.n_gaussians, sample.sh_rms);

@@ -6,6 +6,7 @@
 #include <jansson.h>
 #include <stdio.h>
 #include "cli.h"
+#include "json_string.h"
 #include "ted4.h"
 
 static const char *const severity_name[] = { "error", "warning", "hint" };
@@ -61,12 +62,11 @@ static void take(void *user, const ted4_finding *f)
 
 static void print_json(const report *r, ted4_status verdict, size_t size)
 {
-    json_t *const path = json_string(r->path); /* NULL: not UTF-8 */
     json_t *const o = json_pack("{s:o, s:I, s:s, s:{s:i, s:i, s:i}, s:O}", "file",
-                                path != NULL ? path : json_null(), "bytes", (json_int_t)size,
-                                "verdict", ted4_verdict_name(ted4_status_verdict(verdict)),
-                                "counts", severity_name[0], r->count[0], severity_name[1],
-                                r->count[1], severity_name[2], r->count[2], "findings", r->list);
+                                ted4_json_string(r->path), "bytes", (json_int_t)size, "verdict",
+                                ted4_verdict_name(ted4_status_verdict(verdict)), "counts",
+                                severity_name[0], r->count[0], severity_name[1], r->count[1],
+                                severity_name[2], r->count[2], "findings", r->list);
 
     json_dumpf(o, stdout, JSON_COMPACT);
     putchar('\n');

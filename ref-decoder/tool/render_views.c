@@ -7,6 +7,7 @@
 
 #include "actions.h"
 #include "cli.h"
+#include "json_string.h"
 #include "output.h"
 #include "render/png_file.h"
 #include "render/view.h"
@@ -48,8 +49,8 @@ static int render_camera(ted4_session *s, ted4_viewer *viewer, const ted4_listed
         code = write_picture(s, &c->view, rgb, number, video, path);
     if (code == TED4_EXIT_FINE && s->set->json)
         ted4_session_append(s->report, "views",
-                            json_pack("{s:s, s:I, s:I}", "path", path, "num", (json_int_t)t.num,
-                                      "den", (json_int_t)t.den));
+                            json_pack("{s:o, s:I, s:I}", "path", ted4_json_string(path), "num",
+                                      (json_int_t)t.num, "den", (json_int_t)t.den));
     free(rgb);
     return code;
 }

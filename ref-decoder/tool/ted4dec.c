@@ -10,6 +10,7 @@
 #include "arguments.h"
 #include "cli.h"
 #include "contract.h"
+#include "json_string.h"
 #include "leftovers.h"
 #include "threads.h"
 #include "output.h"
@@ -353,9 +354,7 @@ static int run(ted4_session *s)
     if (code != TED4_EXIT_FINE || !set->json)
         return code;
 
-    json_t *const name = json_string(set->input); /* NULL: not UTF-8 */
-
-    json_object_set_new(s->report, "file", name != NULL ? name : json_null());
+    json_object_set_new(s->report, "file", ted4_json_string(set->input));
     if (json_object_get(s->report, "verdict") == NULL)
         json_object_set_new(s->report, "verdict", json_string("valid"));
     json_object_set_new(s->report, "frames", json_integer(s->info.frames));

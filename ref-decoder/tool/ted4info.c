@@ -15,6 +15,7 @@
 #include "cli.h"
 #include "file_cameras.h"
 #include "findings.h"
+#include "json_string.h"
 #include "ted4.h"
 #include "threads.h"
 #include "meta_lines.h"
@@ -339,13 +340,12 @@ static json_t *describing_json(const uint8_t *data, size_t size)
 static void print_json(const settings *s, const ted4_info *info, const ted4_budget *b,
                        const uint8_t *data, size_t size)
 {
-    json_t *const name = json_string(s->input); /* NULL: not UTF-8 */
     char hash[33];
     json_t *o;
 
     ted4_hex(hash, info->hash, sizeof info->hash);
     o = json_pack("{s:o, s:s, s:I, s:i, s:s, s:I, s:I, s:I, s:o}", "file",
-                  name != NULL ? name : json_null(), "verdict", "valid", "bytes", (json_int_t)size,
+                  ted4_json_string(s->input), "verdict", "valid", "bytes", (json_int_t)size,
                   "level", info->level, "hash", hash, "anchors", (json_int_t)info->n_anchors,
                   "moving", (json_int_t)info->n_dynamic, "gaussians", (json_int_t)info->n_gaussians,
                   "header", header_json(b));

@@ -6,14 +6,8 @@
 #include <jansson.h>
 #include <stdio.h>
 
+#include "tool/json_string.h"
 #include "train/model/header_from_options.h"
-
-static json_t *text(const char *t)
-{
-    json_t *const s = json_string(t); /* NULL: not UTF-8 */
-
-    return s != NULL ? s : json_null();
-}
 
 /* The smallest and the largest picture: [width, height] each. */
 static json_t *sizes(const ted4_dataset *d)
@@ -47,8 +41,8 @@ static void describe(const ted4_dataset *d, json_t *o)
     for (size_t i = 0; i < d->n_pictures; i++)
         tests += d->pictures[i].is_test;
     for (size_t i = 0; i < d->n_warnings; i++)
-        json_array_append_new(warnings, text(d->warnings[i]));
-    json_object_set_new(o, "layout", text(d->layout));
+        json_array_append_new(warnings, ted4_json_string(d->warnings[i]));
+    json_object_set_new(o, "layout", ted4_json_string(d->layout));
     json_object_set_new(o, "train", json_integer((json_int_t)(d->n_pictures - tests)));
     json_object_set_new(o, "test", json_integer((json_int_t)tests));
     json_object_set_new(o, "cameras", json_integer(d->n_cameras));
@@ -78,7 +72,7 @@ void ted4_check_report(const ted4_dataset *d, const ted4_train_options *options,
     }
     json_t *const o = json_object();
 
-    json_object_set_new(o, "error", error != NULL ? text(error) : json_null());
+    json_object_set_new(o, "error", error != NULL ? ted4_json_string(error) : json_null());
     if (d != NULL)
         describe(d, o);
     if (d != NULL && d->n_frames > 1) {

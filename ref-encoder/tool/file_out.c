@@ -7,6 +7,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "tool/json_string.h"
 #include "tool/output.h"
 
 /* Permissions alone do not tell whether a file can be written (root, /proc, full file systems), so
@@ -29,7 +30,8 @@ int ted4_file_writable(const char *path, int force, char *why, size_t why_size)
         return -1;
     }
     if (ted4_output_open(&o, path) != 0) {
-        snprintf(why, why_size, "%.200s: cannot be written: %s", path, strerror(errno));
+        snprintf(why, why_size, "%.*s: cannot be written: %s", ted4_whole_letters(path, 200), path,
+                 strerror(errno));
         return -1;
     }
     ted4_output_cancel(&o);

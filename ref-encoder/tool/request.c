@@ -10,6 +10,7 @@
 #include "norm/syntax.h"
 #include "ted4.h"
 #include "tool/arguments.h"
+#include "tool/json_string.h"
 #include "tool/output.h"
 #include "tool/similar.h"
 #include "tool/threads.h"
@@ -380,8 +381,8 @@ static int apply(ted4_request *r, const pending *p)
     int status = TED4_REQUEST_GO;
 
     if (ted4_options_preset(&r->options, p->preset) != 0) {
-        snprintf(text, sizeof text,
-                 "--preset %.100s: expected draft, fast, medium, slow or paper%s", p->preset,
+        snprintf(text, sizeof text, "--preset %.*s: expected draft, fast, medium, slow or paper%s",
+                 ted4_whole_letters(p->preset, 100), p->preset,
                  suggestion(p->preset, ted4_options_preset_name, hint, sizeof hint));
         return complain(text);
     }

@@ -9,6 +9,7 @@
 
 #include "describe_trained.h"
 #include "stop.h"
+#include "tool/json_string.h"
 #include "train/monitor/checkpoint.h"
 #include "train/step/export_scene.h"
 #include "train/monitor/monitor.h"
@@ -163,13 +164,14 @@ static int stop(ted4_training *t, int between)
         return -1;
     if (t->saved >= 0) {
         snprintf(text, sizeof text,
-                 "%.400s holds step %lld; the same command with --resume goes on from there",
-                 t->request->checkpoint, (long long)t->saved);
+                 "%.*s holds step %lld; the same command with --resume goes on from there",
+                 ted4_whole_letters(t->request->checkpoint, 400), t->request->checkpoint,
+                 (long long)t->saved);
         way = text;
     } else if (exists(t->request->stage1)) {
         snprintf(text, sizeof text,
-                 "%.400s holds the end of stage 1; the same command goes on from there",
-                 t->request->stage1);
+                 "%.*s holds the end of stage 1; the same command goes on from there",
+                 ted4_whole_letters(t->request->stage1, 400), t->request->stage1);
         way = text;
     }
     t->stopped = t->asked;

@@ -7,7 +7,7 @@
 set -u
 export LC_ALL=C
 . tests/support/speak.sh
-need says ted4enc ted4eval ted4scene
+need says ted4enc ted4dec ted4info ted4eval ted4scene
 # equal NAME VALUE WANTED
 equal() { if [ "$2" = "$3" ]; then ok "$1"; else fail "$1" "$2, expected $3"; fi; }
 enc=$TED4_BUILD/ted4enc
@@ -29,6 +29,23 @@ expect file_rate 0 '(the file will say ' "$enc" "$out/scene" --check
 expect check_json_missing 3 "$out/none: no such folder" "$enc" "$out/none" --check --json
 "$enc" "$out/none" --check --json 2>/dev/null >"$out/json"
 check check_json_error "$out/json" "{\"error\":\"$out/none: no such folder"
+
+# Names that are not UTF-8, and a message that is cut inside a letter, are JSON all the same.
+odd=$(printf 'no\377'); unknown=$(printf '\357\277\275')
+"$enc" "$out/$odd" --check --json 2>/dev/null >"$out/json"
+check check_json_bytes "$out/json" "{\"error\":\"$out/no$unknown: no such folder"
+"$enc" "$out/scene" --check --json --hold-out "a$(printf '\303\244%.0s' $(seq 120))" 2>/dev/null \
+    >"$out/json"
+check check_json_cut "$out/json" "{\"error\":\"" "$(printf 'a\303\244')"
+cp conformance/vectors/worked/WRK-annex-b2.ted4 "$out/$odd.ted4"
+"$TED4_BUILD/ted4dec" "$out/$odd.ted4" -o "$out/$odd.ply" --render "$out/$odd.png" --orbit 1 \
+    --json --time 0 2>/dev/null >"$out/json"
+check dec_json_bytes "$out/json" "\"exports\":[{\"path\":\"$out/no$unknown.ply\"" \
+    "\"views\":[{\"path\":\"$out/no$unknown.png\"" "\"file\":\"$out/no$unknown.ted4\""
+"$TED4_BUILD/ted4info" "$out/$odd.ted4" --validate --json >"$out/json"
+check info_json_bytes "$out/json" "\"file\":\"$out/no$unknown.ted4\""
+"$TED4_BUILD/ted4info" "$out/$odd" --json >"$out/json" 2>/dev/null
+check missing_json_bytes "$out/json" "\"file\":\"$out/no$unknown\""
 
 # A video whose frames take time: an ffmpeg that makes one picture in a second and a half.
 mkdir "$out/bin" "$out/clips"
