@@ -6,13 +6,13 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "check_report.h"
 #include "data/dataset.h"
 #include "data/scatter.h"
 #include "file_out.h"
+#include "outputs.h"
 #include "tool/threads.h"
 #include "request.h"
 #include "stop.h"
@@ -180,29 +180,15 @@ static int encode(const encoder *e, ted4_dataset *d)
 
 enum { FEWEST_DECODERS = 4 };
 
-static int is_device(const char *path)
-{
-    struct stat s;
-
-    return stat(path, &s) == 0 && !S_ISREG(s.st_mode) && !S_ISDIR(s.st_mode);
-}
-
 /* Tests before hours of training whether all output files can be written. Returns 0 or an exit
  * status. */
 static int check_outputs(const encoder *e)
 {
-    const ted4_request *r = e->request;
     char why[1024];
 
-    if (r->check || !leads(e->exchange))
+    if (e->request->check || !leads(e->exchange))
         return 0;
-    if (ted4_file_writable(r->out, r->force, why, sizeof why) != 0 ||
-        (r->checkpoint != NULL && ted4_file_writable(r->checkpoint, 1, why, sizeof why) != 0) ||
-        (r->stage1 != NULL && ted4_file_writable(r->stage1, 1, why, sizeof why) != 0) ||
-        (r->log != NULL && !is_device(r->log) &&
-         ted4_file_writable(r->log, 1, why, sizeof why) != 0))
-        return complain(e, why);
-    return 0;
+    return ted4_outputs_check(e->request, why, sizeof why) == 0 ? 0 : complain(e, why);
 }
 
 /* Number of threads that decode pictures in advance: none for a single thread; otherwise as many as
@@ -329,25 +315,48 @@ static int work(const encoder *e)
     return status;
 }
 
+/* Reads the file of --transcode. Returns NULL, with *status set and a message, if that fails. */
+static uint8_t *read_input(const encoder *e, size_t *size, int *status)
+{
+    uint8_t *const file = ted4_read_file(e->request->transcode, size);
+
+    if (file == NULL) {
+        ted4_teller_clear(e->teller);
+        *status = ted4_report_unread("ted4enc", e->request->transcode, e->request->json);
+    }
+    return file;
+}
+
+/* Says why a file became no other one. why: NULL if the file was refused for error. */
+static int complain_of_input(const encoder *e, const ted4_error *error, const char *why)
+{
+    char text[1024];
+
+    if (why == NULL) {
+        ted4_teller_clear(e->teller);
+        return ted4_report("ted4enc", e->request->transcode, error, e->request->json);
+    }
+    snprintf(text, sizeof text, "%s: %s", e->request->transcode, why);
+    return complain(e, text);
+}
+
 /* --transcode. Returns the exit status. */
 static int transcode(const encoder *e)
 {
     const ted4_request *r = e->request;
     size_t size, out_size, dropped;
-    uint8_t *file = ted4_read_file(r->transcode, &size), *out;
+    int sorted, status;
+    uint8_t *const file = read_input(e, &size, &status), *out;
+    ted4_error error = { TED4_OK, 0 };
     char text[1024];
     const char *why;
-    int sorted, status;
 
-    if (file == NULL) {
-        snprintf(text, sizeof text, "%s: cannot be read", r->transcode);
-        return complain(e, text);
-    }
+    if (file == NULL)
+        return status;
     if (ted4_transcode(file, size, r->options.profile, e->parallel, &out, &out_size, &sorted,
-                       &dropped, &why) != 0) {
+                       &dropped, &error, &why) != 0) {
         free(file);
-        snprintf(text, sizeof text, "%s: %s", r->transcode, why);
-        return complain(e, text);
+        return complain_of_input(e, &error, why);
     }
     if (sorted)
         ted4_teller_error(e->teller, "warning: anchors are in another order, with another hash");

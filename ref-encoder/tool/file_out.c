@@ -12,7 +12,7 @@
 
 /* Permissions alone do not tell whether a file can be written (root, /proc, full file systems), so
  * the temporary file is created and removed again. */
-int ted4_file_writable(const char *path, int force, char *why, size_t why_size)
+int ted4_file_writable(const char *path, int force, const char *instead, char *why, size_t why_size)
 {
     ted4_output o;
     struct stat there;
@@ -26,7 +26,7 @@ int ted4_file_writable(const char *path, int force, char *why, size_t why_size)
         return -1;
     }
     if (!force && ted4_output_exists(path)) {
-        snprintf(why, why_size, "%s: exists; -f overwrites", path);
+        snprintf(why, why_size, "%s: exists; %s-f overwrites", path, instead);
         return -1;
     }
     if (ted4_output_open(&o, path) != 0) {

@@ -7,8 +7,10 @@
 #include <stddef.h>
 
 /* Tests whether path can be written: a file can be created in the same folder, and path does not
- * exist, or force is set. Leaves no file behind. Returns 0, or -1 with why filled. */
-int ted4_file_writable(const char *path, int force, char *why, size_t why_size);
+ * exist, or force is set. Leaves no file behind. instead: what else may be done with a file that
+ * exists, as in "--resume goes on, ", or "". Returns 0, or -1 with why filled. */
+int ted4_file_writable(const char *path, int force, const char *instead, char *why,
+                       size_t why_size);
 /* Writes the file. Returns 0, or -1 with why filled. */
 int ted4_file_write(const char *path, const void *data, size_t size, char *why, size_t why_size);
 

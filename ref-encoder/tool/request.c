@@ -116,7 +116,7 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
     [OPT_JSON] = { 0, "json", NULL, "result as one JSON object" },
     [OPT_CONTRACT] = { 0, "ted4-encode", NULL,
                        "the contract of conformance/README.md: --json --quiet" },
-    [OPT_FORCE] = { 'f', "force", NULL, "overwrite" },
+    [OPT_FORCE] = { 'f', "force", NULL, "overwrite files, also a checkpoint or a log" },
     [OPT_QUIET] = { 'q', "quiet", NULL, "errors only: nothing of how far it is" },
     [OPT_VERBOSE] = { 'v', "verbose", NULL, "a line of progress every 250 steps" },
     [OPT_HELP] = TED4_ARGUMENT_HELP,
@@ -158,9 +158,9 @@ static const ted4_command COMMAND = {
     "ted4-UID in $TMPDIR or /tmp.",
     OPTIONS,
     N_OPTIONS,
-    "Exit codes: 0 fine, 2 fine but larger than --target-size, 3 usage, input, output\n"
-    "or resources, 130 stopped by Ctrl-C, 143 by a request to end: after the step,\n"
-    "with a last checkpoint.\n\n"
+    "Exit codes: 0 fine, 1 the file of --transcode was refused, 2 fine but larger\n"
+    "than --target-size, 3 usage, input, output or resources, 130 stopped by Ctrl-C,\n"
+    "143 by a request to end: after the step, with a last checkpoint.\n\n"
     "Examples:\n"
     "  ted4enc --check scene\n"
     "  ted4enc scene -o a.ted4 --preset draft --downscale 2 --cameras\n\n"

@@ -114,20 +114,19 @@ static const char *write_scene(ted4_scene *s, int profile, const ted4_parallel *
 }
 
 int ted4_transcode(const uint8_t *file, size_t size, int profile, const ted4_parallel *p,
-                   uint8_t **out, size_t *out_size, int *sorted, size_t *dropped, const char **why)
+                   uint8_t **out, size_t *out_size, int *sorted, size_t *dropped, ted4_error *e,
+                   const char **why)
 {
     const ted4_options options = { .max_bytes = UINT64_MAX, .parallel = p };
-    ted4_error e = { TED4_OK, 0 };
     ted4_scene *s;
     uint8_t *bare = NULL;
     size_t bare_size = 0;
     ted4_edit edit;
 
     *dropped = 0;
-    if (ted4_decode(file, size, &options, &s, &e) != TED4_OK) {
-        *why = ted4_status_text(e.code);
+    *why = NULL;
+    if (ted4_decode(file, size, &options, &s, e) != TED4_OK)
         return -1;
-    }
     *why = write_scene(s, profile, p, &bare, &bare_size, sorted);
     ted4_scene_free(s);
     if (*why != NULL)

@@ -51,8 +51,16 @@ expect reordered_valid 0 '"valid"' "$dec" --ted4-run "$out/m.ted4" --tiers T1
 ancillary=$vectors/valid/extension/EXT-many.ted4
 expect dropped 0 'unknown chunks are left out' \
     "$enc" --transcode "$ancillary" --profile compact -q -f -o "$out/a.ted4"
-expect missing 3 'cannot be read' "$enc" --transcode "$out/none" -f -o "$out/a.ted4"
-expect broken 3 'not a TED4 file' "$enc" --transcode tests/support/speak.sh -f -o "$out/a.ted4"
+expect missing 3 "ted4enc: $out/none: No such file or directory" \
+    "$enc" --transcode "$out/none" -f -o "$out/a.ted4"
+expect broken 1 'speak.sh: byte 0: not a TED4 file [con.magic]' \
+    "$enc" --transcode tests/support/speak.sh -f -o "$out/a.ted4"
+head -c 500 "$grid" >"$out/cut.ted4"
+expect cut 1 "ted4enc: $out/cut.ted4: byte " "$enc" --transcode "$out/cut.ted4" -o "$out/no.ted4"
+expect cut_json 1 '"verdict":"invalid","error":"con.truncated","offset":' \
+    "$enc" --transcode "$out/cut.ted4" -o "$out/no.ted4" --json
+[ -e "$out/no.ted4" ] && fail cut_writes_nothing "an output" || ok cut_writes_nothing
+expect missing_json 3 '"verdict":"io"' "$enc" --transcode "$out/none" -o "$out/no.ted4" --json
 expect scene_too 3 'no scene folder' "$enc" scene --transcode "$grid" -f -o "$out/a.ted4"
 expect which_profile 3 'expected main or compact' "$enc" --profile small --transcode "$grid" \
     -f -o "$out/a.ted4"

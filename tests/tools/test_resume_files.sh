@@ -1,0 +1,42 @@
+#!/bin/sh
+# test_resume_files.sh - ted4enc does not write over a checkpoint or a log unless it goes on from
+# there or is told to, and refuses two outputs of one name, before it trains. Prints lines as a
+# cmocka program does; run by `make test` from the project's root.
+# SPDX-License-Identifier: BSD-2-Clause
+set -u
+export LC_ALL=C
+. tests/support/speak.sh
+need resume_files ted4enc ted4scene
+scene=$out/scene
+small="--preset draft --iterations 30,20 --capacity fixed --seed 1 -j 1 --set init_anchors=150
+    --set max_anchors=260 --set offsets=4 --set feature=8 --set phi=4 --set bank_dim=8
+    --set deform_width=8 --set head_width=12 --set hyper_width=16 --set ar_width=8 --set slices=2"
+"$TED4_BUILD/ted4scene" pop -o "$scene" --size 32x24 --frames 4 --cameras 5 --test-cameras 1 -j 1 \
+    2>/dev/null
+enc() { "$TED4_BUILD/ted4enc" "$scene" $small "$@"; }
+cd "$out" || exit 1
+
+# What is there stays as it is.
+echo mine >c; echo mine >l
+expect checkpoint 3 'ted4enc: c: exists; --resume goes on from it, -f overwrites' \
+    enc -o a.ted4 --checkpoint c
+expect log 3 'ted4enc: l: exists; --resume goes on with it, -f overwrites' enc -o a.ted4 --log l
+expect log_resumed 3 'l: there, but not a log' enc -o a.ted4 --log l --checkpoint d --resume
+[ "$(cat c l | tr -d '\n')" = minemine ] && ok untouched || fail untouched "$(cat c l)"
+[ -e a.ted4 ] && fail before_training "a file" || ok before_training
+expect forced 0 'a.ted4: ' enc -o a.ted4 --checkpoint c --log l -f
+expect resumed 0 'c: going on from step 50' enc -o b.ted4 --checkpoint c --log l --resume
+expect resumed_forced 0 'c: going on from step 50' enc -o b.ted4 --checkpoint c --log l --resume -f
+expect device 0 'd.ted4: ' enc -o d.ted4 --log /dev/null
+
+# One name for two outputs.
+expect same_log 3 'ted4enc: --log and -o: both are w.ted4' enc -o w.ted4 --log w.ted4
+expect same_stage1 3 'ted4enc: --stage1 and --checkpoint: both are ./t' \
+    enc -o w.ted4 --checkpoint t --stage1 ./t
+ln -s c link
+expect same_link 3 'ted4enc: --log and --checkpoint: both are link' \
+    enc -o w.ted4 --checkpoint c --log link -f
+expect same_late 3 'ted4enc: --log and --stage1: both are n' \
+    enc -o w.ted4 --log n --stage1 "../$(basename "$out")/n"
+[ -e w.ted4 ] || [ -e t ] || [ -e n ] && fail nothing "$(ls)" || ok nothing
+exit $bad
