@@ -9,6 +9,7 @@
 #include "base/bytes.h"
 #include "norm/syntax.h"
 #include "ted4.h"
+#include "tool/json_string.h"
 #include "write/buffer.h"
 
 enum { MINOR_AT = 9, PROFILE_AT = 10, LEVEL_AT = 11, COMPACT_MINOR = 2 };
@@ -56,6 +57,19 @@ size_t ted4_edit_drop(ted4_edit *e, const char *type)
     return n;
 }
 
+int ted4_edit_is_critical(const ted4_edit *e, const char *type)
+{
+    static const char *const known[] = { "HEAD", "NETE", "NETR", "BANK", "POSN", "TILE", "ENDS" };
+    int is = 0;
+
+    for (size_t i = 0; i < sizeof known / sizeof known[0]; i++)
+        is |= strcmp(known[i], type) == 0;
+    for (size_t i = 0; i < e->n; i++)
+        is |= (e->chunk[i].view.flags & TED4_CHUNK_IS_CRITICAL) != 0 &&
+              strcmp(e->chunk[i].view.type, type) == 0;
+    return is;
+}
+
 static int make_room(ted4_edit *e)
 {
     const size_t room = 2 * e->room + 8;
@@ -88,6 +102,71 @@ int ted4_edit_add(ted4_edit *e, const char *type, uint32_t flags, uint8_t *paylo
 }
 
 /* ---- META ---- */
+
+int ted4_edit_is_text(const char *text)
+{
+    for (const char *c = text; *c != '\0'; c++)
+        if ((unsigned char)*c < ' ' || *c == 0x7f)
+            return 0;
+    return ted4_is_utf8(text);
+}
+
+/* Reads n digits, and moves *text behind them. Returns whether they are a number of low to high. */
+static int is_number(const char **text, int n, int low, int high)
+{
+    int value = 0;
+
+    for (int i = 0; i < n; i++, ++*text) {
+        if (**text < '0' || **text > '9')
+            return 0;
+        value = 10 * value + (**text - '0');
+    }
+    return value >= low && value <= high;
+}
+
+/* Moves *text behind a character, which is one of these. Returns whether it was there. */
+static int is_one(const char **text, const char *of)
+{
+    const int is = **text != '\0' && strchr(of, **text) != NULL;
+
+    *text += is;
+    return is;
+}
+
+static int is_day(const char **text)
+{
+    static const int days[] = { 31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31 };
+    const char *const begin = *text;
+
+    if (!is_number(text, 4, 0, 9999) || !is_one(text, "-") || !is_number(text, 2, 1, 12) ||
+        !is_one(text, "-"))
+        return 0;
+
+    const int year = atoi(begin), month = atoi(begin + 5);
+    const int leaps = year % 4 == 0 && (year % 100 != 0 || year % 400 == 0);
+
+    return is_number(text, 2, 1, days[month - 1] + (month == 2 && leaps));
+}
+
+/* A second may be the 60th, a leap second. */
+static int is_time(const char **text)
+{
+    if (!is_number(text, 2, 0, 23) || !is_one(text, ":") || !is_number(text, 2, 0, 59) ||
+        !is_one(text, ":") || !is_number(text, 2, 0, 60))
+        return 0;
+    if (is_one(text, ".")) {
+        if (!is_number(text, 1, 0, 9))
+            return 0;
+        *text += strspn(*text, "0123456789");
+    }
+    return is_one(text, "Zz") || (is_one(text, "+-") && is_number(text, 2, 0, 23) &&
+                                  is_one(text, ":") && is_number(text, 2, 0, 59));
+}
+
+int ted4_edit_is_date(const char *text)
+{
+    return is_day(&text) && (!is_one(&text, "Tt") || is_time(&text)) && *text == '\0';
+}
 
 static size_t key_length(const char *line, size_t n)
 {

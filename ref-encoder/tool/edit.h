@@ -37,9 +37,16 @@ void ted4_edit_finish(ted4_edit *e);
 
 /* Drops ancillary chunks of a type; NULL: all of them. Returns how many. */
 size_t ted4_edit_drop(ted4_edit *e, const char *type);
+/* Is the type that of a critical chunk: of this specification, or of one in the file? */
+int ted4_edit_is_critical(const ted4_edit *e, const char *type);
 /* Adds an ancillary chunk before ENDS. payload is malloced, and owned by e from now on, also on
  * failure. Returns 0, or -1 if out of memory, or if size does not fit a chunk (5.2). */
 int ted4_edit_add(ted4_edit *e, const char *type, uint32_t flags, uint8_t *payload, size_t size);
+
+/* Is text what a line of META may hold (spec 5.2): UTF-8 without control characters? */
+int ted4_edit_is_text(const char *text);
+/* Is text a date or a time of RFC 3339, as in 2026-11-24 or 2026-11-24T12:00:00Z (R-EXT-007)? */
+int ted4_edit_is_date(const char *text);
 
 /* Sets lines of META: line[n] are "key=value" without a line feed. A line of the file with the same
  * key goes, and with an empty value the new line is not written either. All lines end up in one

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "edit.h"
 #include "norm/syntax.h"
 #include "ted4.h"
 #include "tool/arguments.h"
@@ -251,8 +252,8 @@ static int take_profile(const char *value, ted4_train_options *o)
 /* A text that becomes one line of META. */
 static int take_text(int option, const char *value, const char **to)
 {
-    if (value[0] == '\0' || strlen(value) > TED4_REQUEST_TEXT || strpbrk(value, "\n\r") != NULL)
-        return bad_value(option, value, "a text of one line, at most 1000 bytes");
+    if (value[0] == '\0' || strlen(value) > TED4_REQUEST_TEXT || !ted4_edit_is_text(value))
+        return bad_value(option, value, "a text of one line, at most 1000 bytes of UTF-8");
     *to = value;
     return TED4_REQUEST_GO;
 }

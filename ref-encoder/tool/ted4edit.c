@@ -88,12 +88,20 @@ static int failed(const char *what, const char *why)
     return TED4_EXIT_TOOL;
 }
 
-/* Is the text one line of META? Whether it is UTF-8 is left to ted4info --validate. */
 static int is_line(const char *text)
 {
     const char *equals = strchr(text, '=');
 
-    return equals != NULL && equals != text && strpbrk(text, "\n\r") == NULL;
+    return equals != NULL && equals != text && ted4_edit_is_text(text);
+}
+
+/* Is the line, KEY=VALUE, one whose value may be any text, or a date, or none? */
+static int has_date(const char *line)
+{
+    static const char key[] = "created=";
+    const char *const value = line + sizeof key - 1;
+
+    return strncmp(line, key, sizeof key - 1) != 0 || *value == '\0' || ted4_edit_is_date(value);
 }
 
 /* key NULL: value is the whole line. */
@@ -109,7 +117,10 @@ static int add_line(settings *s, const char *option, const char *key, const char
     if (n < 0 || n >= LINE_SIZE)
         return failed(option, "too long");
     if (!is_line(to))
-        return failed(option, key != NULL ? "expected a text of one line" : "expected KEY=VALUE");
+        return failed(option, key != NULL ? "expected a text of one line, in UTF-8"
+                                          : "expected KEY=VALUE, one line in UTF-8");
+    if (!has_date(to))
+        return failed(option, "expected a date, as 2026-11-24 or 2026-11-24T12:00:00Z");
     for (size_t i = 0; i < s->n_lines; i++)
         if (strncmp(to, s->line[i], (size_t)(strchr(to, '=') - to) + 1) == 0)
             return failed(option, "the key was set before");
@@ -131,6 +142,14 @@ static int normalise(float v[3])
     return 0;
 }
 
+/* A type of chunk is four letters or digits (spec 5.2). */
+static int is_type(const char *text)
+{
+    static const char of[] = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz";
+
+    return strlen(text) == 4 && strspn(text, of) == 4;
+}
+
 static int take(settings *s, int option, const char *value)
 {
     switch (option) {
@@ -149,8 +168,10 @@ static int take(settings *s, int option, const char *value)
         break;
     case OPT_THUMBNAIL: s->thumbnail = value; break;
     case OPT_STRIP:
-        if (s->n_strips == MAX_STRIPS || (strcmp(value, "all") != 0 && strlen(value) != 4))
+        if (strcmp(value, "all") != 0 && !is_type(value))
             return failed("--strip", "expected META, CAMS, THMB, another type, or all");
+        if (s->n_strips == MAX_STRIPS)
+            return failed("--strip", "too many");
         s->strip[s->n_strips++] = value;
         break;
     case OPT_FORCE: s->force = 1; break;
@@ -286,13 +307,30 @@ static int set_thumbnail(ted4_edit *e, const char *path)
                                                        : failed(path, "too many chunks");
 }
 
+/* Does what --strip says. A chunk that the scene is made of is an error; one that is not there is
+ * not, as then it need not be stripped. */
+static int strip(ted4_edit *e, const settings *s)
+{
+    for (size_t i = 0; i < s->n_strips; i++) {
+        const char *const type = s->strip[i];
+        const int all = strcmp(type, "all") == 0;
+
+        if (!all && ted4_edit_is_critical(e, type)) {
+            fprintf(stderr, "ted4edit: --strip: the scene is made of chunks %s\n", type);
+            return TED4_EXIT_TOOL;
+        }
+        if (ted4_edit_drop(e, all ? NULL : type) == 0 && !s->quiet)
+            fprintf(stderr, "ted4edit: note: %s: no chunk to strip%s%s\n", s->input,
+                    all ? "" : ": ", all ? "" : type);
+    }
+    return TED4_EXIT_FINE;
+}
+
 static int change(ted4_edit *e, const settings *s, const ted4_info *info)
 {
-    int code = TED4_EXIT_FINE;
+    int code = strip(e, s);
 
-    for (size_t i = 0; i < s->n_strips; i++)
-        ted4_edit_drop(e, strcmp(s->strip[i], "all") == 0 ? NULL : s->strip[i]);
-    if (s->n_lines > 0 && ted4_edit_lines(e, s->line, s->n_lines) != 0)
+    if (code == TED4_EXIT_FINE && s->n_lines > 0 && ted4_edit_lines(e, s->line, s->n_lines) != 0)
         code = failed("--set", "out of memory");
     if (code == TED4_EXIT_FINE && s->cameras != NULL)
         code = add_cameras(e, s, info, s->cameras, TED4_CAMS_TAKEN);

@@ -343,6 +343,44 @@ static void chunks_end_with_the_file(void **state)
     free(file);
 }
 
+static void dates_are_of_rfc_3339(void **state)
+{
+    static const char *const good[] = { "2026-11-24",
+                                        "2024-02-29",
+                                        "2000-02-29",
+                                        "2026-11-24T12:00:00Z",
+                                        "2026-11-24t23:59:60z",
+                                        "2026-11-24T12:00:00.125+01:00",
+                                        "2026-11-24T12:00:00-00:00" };
+    static const char *const none[] = { "",
+                                        "yesterday",
+                                        "2026",
+                                        "2026-11",
+                                        "2026-13-01",
+                                        "2026-00-01",
+                                        "2026-11-31",
+                                        "2026-11-00",
+                                        "1900-02-29",
+                                        "2026-02-29",
+                                        "2026-11-24T",
+                                        "2026-11-24T12:00Z",
+                                        "2026-11-24T24:00:00Z",
+                                        "2026-11-24T12:00:00",
+                                        "2026-11-24T12:00:00.Z",
+                                        "2026-11-24T12:00:00+0100",
+                                        "2026-11-24T12:00:00Z ",
+                                        "2026-1-24",
+                                        "24.11.2026" };
+
+    (void)state;
+    for (size_t i = 0; i < sizeof good / sizeof good[0]; i++)
+        if (!ted4_edit_is_date(good[i]))
+            fail_msg("%s", good[i]);
+    for (size_t i = 0; i < sizeof none / sizeof none[0]; i++)
+        if (ted4_edit_is_date(none[i]))
+            fail_msg("%s", none[i]);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -354,6 +392,7 @@ int main(void)
         cmocka_unit_test(many_chunks_are_added_in_order),
         cmocka_unit_test(broken_cameras_are_refused),
         cmocka_unit_test(chunks_end_with_the_file),
+        cmocka_unit_test(dates_are_of_rfc_3339),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -58,6 +58,23 @@ refuse() { expect "$1" 3 "$2" "$TED4_BUILD/ted4edit" "$out/plain.ted4" -o "$out/
 refuse no_key 'ted4edit: --set: expected KEY=VALUE' --set title
 refuse two_lines 'ted4edit: --title: expected a text of one line' --title 'a
 b'
+refuse no_utf8 'ted4edit: --title: expected a text of one line, in UTF-8' --title \
+    "$(printf 'caf\351')"
+refuse no_text 'ted4edit: --set: expected KEY=VALUE, one line in UTF-8' --set "$(printf 'a=b\tc')"
+refuse no_date 'ted4edit: --created: expected a date, as 2026-11-24 or ' --created yesterday
+refuse no_date_set 'ted4edit: --set: expected a date, as 2026-11-24 or ' --set created=2026-02-29
+expect date 0 'the scene is the same' "$TED4_BUILD/ted4edit" "$out/plain.ted4" \
+    -o "$out/dated.ted4" --created 2026-11-24T12:00:00Z --title "$(printf 'A t\303\251st')"
+equal dated_valid "$("$TED4_BUILD/ted4info" "$out/dated.ted4" --validate | grep -c 'adv.meta')" 0
+expect enc_utf8 3 'expected a text of one line, at most 1000 bytes of UTF-8' "$TED4_BUILD/ted4enc" \
+    "$out/scene" --check --title "$(printf 'caf\351')"
+refuse strip_scene 'ted4edit: --strip: the scene is made of chunks HEAD' --strip HEAD
+refuse strip_no_type 'ted4edit: --strip: expected META, CAMS, THMB, another type, or all' \
+    --strip 'ME-A'
+expect strip_nothing 0 "ted4edit: note: $out/all.ted4: no chunk to strip: meta" \
+    "$TED4_BUILD/ted4edit" "$out/all.ted4" -o "$out/kept.ted4" --strip meta
+expect strip_none 0 "ted4edit: note: $out/plain.ted4: no chunk to strip" \
+    "$TED4_BUILD/ted4edit" "$out/plain.ted4" -o "$out/kept.ted4" -f --strip all
 refuse no_direction 'ted4edit: --up: expected a direction X,Y,Z' --up 0,0,0
 refuse no_png "ted4edit: $out/path.json: expected a PNG file of at most 1024 x 1024 pixels" \
     --thumbnail "$out/path.json"
