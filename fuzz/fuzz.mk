@@ -25,7 +25,7 @@ FUZZ_CODEC    = $(patsubst %.c,$B/%.o,$(DEC_SRC) \
                 $(wildcard ref-encoder/math/*.c ref-encoder/write/*.c)) $(FUZZ_OBJ)
 FUZZ_SCENE    = $(patsubst %.c,$B/%.o,$(wildcard ref-encoder/data/*.c) \
                 $(addprefix ref-decoder/tool/,camera_lens.c camera_list.c camera_transforms.c \
-                read_file.c times.c) fuzz/scene_folder.c)
+                json_file.c read_file.c times.c) fuzz/scene_folder.c)
 FUZZ_MUTATE   = $(patsubst %,$B/fuzz/%.o,mutate mutate_scene fields)
 # Inputs that are .ted4 files have a mutator that knows them.
 FUZZ_FILES    = decode decode_chunked editor roundtrip recon alloc_fail dump validate lenient \

@@ -12,16 +12,17 @@ struct class_t {
 static const char *const group_name[TOL_GROUPS + 1] = { "position", "scale",  "rotation",
                                                         "opacity",  "colour", "not finite" };
 
-class_t *class_t_open(const uint8_t *data, size_t size, const char **why)
+class_t *class_t_open(const uint8_t *data, size_t size, const char **id, uint64_t *offset)
 {
     class_t *const c = calloc(1, sizeof *c);
 
-    *why = "no memory";
+    *id = NULL;
     if (c == NULL)
         return NULL;
     spec_model_decode(&c->model, data, size);
-    *why = c->model.p.v.id;
-    if (*why == NULL)
+    *id = c->model.p.v.id;
+    *offset = c->model.p.v.offset;
+    if (*id == NULL)
         return c;
     class_t_close(c);
     return NULL;

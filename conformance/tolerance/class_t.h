@@ -23,8 +23,9 @@ typedef struct {
 
 typedef struct class_t class_t; /* a valid stream, decoded */
 
-/* NULL: the stream is not valid, and *why names the error. data is not kept. */
-class_t *class_t_open(const uint8_t *data, size_t size, const char **why);
+/* NULL: the stream is not valid, and *id names the error at *offset; or *id is NULL, as there is no
+ * memory. data is not kept. */
+class_t *class_t_open(const uint8_t *data, size_t size, const char **id, uint64_t *offset);
 void class_t_close(class_t *c); /* NULL is fine */
 
 /* 1, or 0: class X has no result for the query. */

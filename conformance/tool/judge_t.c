@@ -65,6 +65,7 @@ static const char *judge_records(records_case *c, size_t i, const json_t *query,
     conf_bytes records;
     char path[CONF_PATH];
     const char *why = "the file that --dump has left is not what the answer says";
+    uint64_t offset;
 
     conf_path(path, "%s/T5-%zu.bin", c->folder, i);
     if (lstat(path, &file) != 0 || !S_ISREG(file.st_mode))
@@ -74,9 +75,10 @@ static const char *judge_records(records_case *c, size_t i, const json_t *query,
         return "not as many records as in class X";
     if (is_that(&records, got)) {
         if (c->stream == NULL)
-            c->stream = class_t_open(c->file->data, c->file->size, &why);
+            c->stream = class_t_open(c->file->data, c->file->size, &why, &offset);
         if (c->stream == NULL)
-            conf_die("%s: the printed code says %s", path, why);
+            conf_die("%s: the printed code says %s", path,
+                     why != NULL ? why : "that there is no memory");
         why = class_t_judge(c->stream, &q, records.data, records.size);
     }
     conf_free(&records);

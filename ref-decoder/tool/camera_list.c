@@ -2,7 +2,6 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "camera_list.h"
 
-#include <errno.h>
 #include <inttypes.h>
 #include <jansson.h>
 #include <math.h>
@@ -13,7 +12,7 @@
 #include "rotation.h"
 
 #include "camera_transforms.h"
-#include "cli.h"
+#include "json_file.h"
 
 enum { MAX_SIDE = 16384, TIME_DENOMINATOR = 10000000 };
 
@@ -104,28 +103,9 @@ static const char *get_camera(const json_t *o, ted4_listed_camera *c)
     return get_time(o, c) ? NULL : "needs frame, a whole number, or time, from 0 to 1, or neither";
 }
 
-/* Returns the JSON text in a file, or NULL with why filled. */
-static json_t *load_json(const char *path, char *why, size_t why_size)
-{
-    json_error_t e;
-    size_t size;
-    uint8_t *const data = ted4_read_file(path, &size);
-    json_t *json;
-
-    if (data == NULL) {
-        snprintf(why, why_size, "%s", strerror(errno));
-        return NULL;
-    }
-    json = json_loadb((const char *)data, size, JSON_REJECT_DUPLICATES, &e);
-    if (json == NULL)
-        snprintf(why, why_size, "line %d: %s", e.line, e.text);
-    free(data);
-    return json;
-}
-
 int ted4_camera_list_load(ted4_camera_list *l, const char *path, char *why, size_t why_size)
 {
-    json_t *const list = load_json(path, why, why_size);
+    json_t *const list = ted4_json_load(path, why, why_size);
     const char *wrong = NULL;
 
     *l = (ted4_camera_list) { 0 };

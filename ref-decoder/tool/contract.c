@@ -2,27 +2,39 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "contract.h"
 
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include "base/bytes.h"
 #include "cli.h"
+#include "json_file.h"
 #include "tier_hash.h"
 
 enum { MAX_PATH = 4096, T5 = 5 };
+
+static const char NO_MEMORY[] = "out of memory";
 
 typedef struct {
     const char *input, *queries, *dump;
     int tier[TED4_TIERS]; /* 1: requested */
     uint64_t max_bytes, max_work;
     int lenient;
-    int failed; /* 1: not the stream's fault: no memory, bad queries, or a file that cannot be
-                   written */
+    int failed; /* 1: not the stream's fault, and it has been said what it is */
 } request;
 
 static int usage(const char *text)
 {
     fprintf(stderr, "ted4dec: %s (see conformance/README.md)\n", text);
     return TED4_EXIT_TOOL;
+}
+
+/* Says why there is no answer, the first time. */
+static void fail(request *r, const char *what, const char *why)
+{
+    if (!r->failed)
+        fprintf(stderr, "ted4dec: %s: %s\n", what, why);
+    r->failed = 1;
 }
 
 int ted4_contract_asked(int argc, char **argv)
@@ -32,11 +44,12 @@ int ted4_contract_asked(int argc, char **argv)
 
 static int print(json_t *o)
 {
-    const int bad = o == NULL || json_dumpf(o, stdout, JSON_COMPACT) != 0 || putchar('\n') == EOF ||
-                    fflush(stdout) != 0;
-
+    if (o == NULL)
+        return usage(NO_MEMORY);
+    json_dumpf(o, stdout, JSON_COMPACT);
+    putchar('\n');
     json_decref(o);
-    return bad ? TED4_EXIT_TOOL : TED4_EXIT_FINE;
+    return ted4_cli_end("ted4dec", TED4_EXIT_FINE);
 }
 
 static json_t *capabilities(void)
@@ -120,14 +133,15 @@ static FILE *open_dump(request *r, int tier, int number)
         return NULL;
     snprintf(path, sizeof path, number < 0 ? "%s/T%d.bin" : "%s/T%d-%d.bin", r->dump, tier, number);
     f = fopen(path, "wb");
-    r->failed |= f == NULL;
+    if (f == NULL)
+        fail(r, path, strerror(errno));
     return f;
 }
 
 static void close_dump(request *r, FILE *f)
 {
-    if (f != NULL)
-        r->failed |= ferror(f) | (fclose(f) != 0);
+    if (f != NULL && (ferror(f) | (fclose(f) != 0)) != 0)
+        fail(r, r->dump, strerror(errno));
 }
 
 /* Returns the hashes of one of the tiers T0 to T4. *verdict is set if memory runs out. */
@@ -139,8 +153,9 @@ static json_t *tier_e(request *r, const void *data, size_t size, const ted4_scen
     ted4_error e;
     json_t *answer;
 
-    r->failed |= h == NULL;
-    if (h != NULL)
+    if (h == NULL)
+        fail(r, r->input, NO_MEMORY);
+    else
         *verdict = tier == 0 ? ted4_dump_syntax(data, size, o, ted4_tier_hash_add, h, &e)
                              : ted4_dump_tier(s, tier, o, ted4_tier_hash_add, h);
     answer = ted4_tier_hash_end(h);
@@ -148,8 +163,7 @@ static json_t *tier_e(request *r, const void *data, size_t size, const ted4_scen
     return answer;
 }
 
-/* Reads a query {"t":[num,den],"cam":[x,y,z]}. Returns 0, or -1. */
-static int read_query(const json_t *from, ted4_query *q)
+int ted4_contract_query(const json_t *from, ted4_query *q)
 {
     const json_t *const t = json_object_get(from, "t"), *const cam = json_object_get(from, "cam");
 
@@ -189,24 +203,42 @@ static json_t *records(request *r, ted4_recon *recon, const ted4_query *q, int n
     return answer;
 }
 
+/* Returns the list of --queries, or an empty one; NULL after a message. */
+static json_t *load_queries(request *r)
+{
+    char why[256];
+    json_t *const list = r->queries != NULL ? ted4_json_load(r->queries, why, sizeof why)
+                                            : json_array();
+
+    if (json_is_array(list))
+        return list;
+    if (r->queries == NULL)
+        fail(r, r->input, NO_MEMORY);
+    else
+        fail(r, r->queries, list == NULL ? why : "expected a list of queries");
+    json_decref(list);
+    return NULL;
+}
+
 /* Returns an array with one entry per query. *verdict is set if memory runs out; r->failed is set
  * if the queries cannot be read. */
 static json_t *tier_r(request *r, const ted4_scene *s, const ted4_options *o, ted4_status *verdict)
 {
-    json_t *queries = r->queries != NULL ? json_load_file(r->queries, 0, NULL) : json_array();
-    json_t *answer = json_array();
+    json_t *const queries = load_queries(r), *const answer = json_array();
     ted4_recon *recon = NULL;
 
-    r->failed |= !json_is_array(queries);
     if (json_array_size(queries) > 0)
         *verdict = ted4_recon_new(&recon, s, o);
     for (size_t i = 0; *verdict == TED4_OK && i < json_array_size(queries); i++) {
+        char text[256];
         ted4_query q;
 
-        if (read_query(json_array_get(queries, i), &q) != 0)
-            r->failed = 1;
-        else
+        if (ted4_contract_query(json_array_get(queries, i), &q) == 0) {
             json_array_append_new(answer, records(r, recon, &q, (int)i));
+            continue;
+        }
+        snprintf(text, sizeof text, "query %zu: %s", i, TED4_CONTRACT_QUERY);
+        fail(r, r->queries, text);
     }
     ted4_recon_free(recon);
     json_decref(queries);
@@ -273,7 +305,8 @@ static json_t *answer_salvage(request *r, const ted4_scene *s, const ted4_salvag
                   (json_int_t)what->anchors_declared, "error", ted4_status_id(what->stop.code),
                   "offset", (json_int_t)what->stop.offset, "hash", hash, "tiers",
                   tiers(r, 1, NULL, 0, s, o, &verdict)));
-    r->failed |= verdict != TED4_OK;
+    if (verdict != TED4_OK)
+        fail(r, r->input, ted4_status_text(verdict));
     return answer;
 }
 
@@ -296,9 +329,14 @@ static int answer_run(request *r)
     ted4_scene *s = NULL;
     ted4_options o;
     size_t size;
-    uint8_t *data = ted4_read_file(r->input, &size);
+    uint8_t *data;
     json_t *answer;
 
+    if (r->dump != NULL && mkdir(r->dump, 0777) != 0 && errno != EEXIST) {
+        fail(r, r->dump, strerror(errno));
+        return TED4_EXIT_TOOL;
+    }
+    data = ted4_read_file(r->input, &size);
     memset(&o, 0, sizeof o);
     o.max_bytes = r->max_bytes;
     o.max_work = r->max_work;
@@ -312,7 +350,7 @@ static int answer_run(request *r)
     if (!r->failed)
         return print(answer);
     json_decref(answer);
-    return usage("no memory, bad queries, or a dump that cannot be written");
+    return TED4_EXIT_TOOL;
 }
 
 int ted4_contract(int argc, char **argv)

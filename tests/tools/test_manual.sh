@@ -43,8 +43,7 @@ options() {
         sed -n 's/^--//p' | sort >"$out/found"
     same "${page}_bash" "$out/wanted" "$out/found"
 }
-for p in ted4dec ted4info ted4enc ted4eval ted4edit ted4scene; do options $p $p; done
-page_options ted4tolerance ted4tolerance
+for p in ted4dec ted4info ted4enc ted4eval ted4edit ted4scene ted4tolerance; do options $p $p; done
 for s in $subcommands; do options ted4conf-$s ted4conf $s; done
 echo $subcommands | tr ' ' '\n' >"$out/wanted"
 sed -n 's/^\.It Cm //p' "$man/ted4conf.1" >"$out/found"
@@ -87,6 +86,9 @@ if has bash; then
     completes bash_path CHANGELOG.md ted4dec x.ted4 -o CHANGE
     completes bash_equals CHANGELOG.md ted4dec x.ted4 --output = CHANGE
     completes bash_value "" ted4dec --time ""
+    completes bash_word "judge table" ted4tolerance ""
+    completes bash_word_option "--help" ted4tolerance --h
+    completes bash_word_path CHANGELOG.md ted4tolerance judge CHANGE
     completes bash_nothing "" ted4dec --no-such
     completes bash_subcommand "run replay" ted4conf r
     completes bash_of_subcommand "--jobs --json --junit" ted4conf run --j

@@ -43,4 +43,36 @@ head -c 5600 "$out/keep" >"$out/dump/T5-1.bin"
 judge short 1 '"count"'
 rm "$out/dump/T5-1.bin"
 judge absent 1 '"missing"'
+
+# The example of the help text, in a folder without anything.
+cp $stream.ted4 "$out/a.ted4"
+(cd "$out" && "$TED4_BUILD/ted4dec" --ted4-run a.ted4 --tiers T5 --queries q.json --dump out \
+    >/dev/null) && ok makes_folder || fail makes_folder "status $?"
+expect example 0 '"class":"T"' "$TED4_BUILD/ted4tolerance" judge "$out/a.ted4" "$out/q.json" \
+    "$out/out"
+
+# What is wrong with a query, a dump, a list and a stream.
+run() { expect "$1" 3 "$2" "$TED4_BUILD/ted4dec" --ted4-run "$out/a.ted4" --tiers T5 --queries \
+    "$3" --dump "$4"; }
+echo '[{"t":[0,1]}]' >"$out/odd.json"
+echo '{' >"$out/broken.json"
+echo '{}' >"$out/none.json"
+run no_queries "ted4dec: $out/absent.json: No such file or directory" "$out/absent.json" "$out/out"
+run broken_queries "ted4dec: $out/broken.json: line " "$out/broken.json" "$out/out"
+run odd_query "ted4dec: $out/odd.json: query 0: expected {\"t\":[num,den],\"cam\":[x,y,z]}" \
+    "$out/odd.json" "$out/out"
+run no_list "ted4dec: $out/none.json: expected a list of queries" "$out/none.json" "$out/out"
+run no_dump "ted4dec: $out/a.ted4/x: Not a directory" "$out/q.json" "$out/a.ted4/x"
+judge_of() { expect "$1" "$2" "$3" "$TED4_BUILD/ted4tolerance" judge "$4" "$5" "$out/out"; }
+judge_of judge_absent 3 "ted4tolerance: $out/absent.json: No such file or directory" \
+    "$out/a.ted4" "$out/absent.json"
+judge_of judge_broken 3 "ted4tolerance: $out/broken.json: line " "$out/a.ted4" "$out/broken.json"
+judge_of judge_none 3 "ted4tolerance: $out/none.json: no list of queries" "$out/a.ted4" \
+    "$out/none.json"
+judge_of judge_odd 3 "ted4tolerance: $out/odd.json: query 0: expected" "$out/a.ted4" "$out/odd.json"
+head -c 1000 "$out/a.ted4" >"$out/cut.ted4"
+judge_of judge_cut 1 "ted4tolerance: $out/cut.ted4: byte 1000: refused [con.truncated]" \
+    "$out/cut.ted4" "$out/q.json"
+judge_of judge_no_stream 3 "ted4tolerance: $out/absent.ted4: No such file" "$out/absent.ted4" \
+    "$out/q.json"
 exit $bad

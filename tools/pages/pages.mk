@@ -2,7 +2,8 @@
 # text; included by the Makefile. A program that is linked with tools/pages writes its own.
 PAGES_OBJ  = $(patsubst %.c,$B/%.o,$(wildcard tools/pages/*.c))
 PAGES_LINK = $(CC) -fopenmp $(LDFLAGS) -Wl,--wrap=ted4_arguments_next $^ -o $@ $(LIBS)
-PAGES_PROG = $(addprefix $B/pages/,$(DEC_PROG) $(ENC_PROG) ted4conf ted4scene)
+PAGES_PROG = $(addprefix $B/pages/,$(DEC_PROG) $(ENC_PROG) ted4conf ted4scene \
+             ted4tolerance)
 
 $(PAGES_PROG): | $B/pages
 $B/pages:
@@ -17,6 +18,10 @@ $B/pages/ted4conf: $(CONF_OBJ) $(PAGES_OBJ) $(CLASS_T_OBJ) $(ENC_LIB)
 	$(PAGES_LINK)
 $B/pages/ted4scene: $B/tools/scene/ted4scene.o $(SCENE_SRC:%.c=$B/%.o) $(PAGES_OBJ) \
         $(DEC_TOOL:%.c=$B/%.o) $(ENC_LIB)
+	$(PAGES_LINK)
+
+$B/pages/ted4tolerance: $B/conformance/tolerance/ted4tolerance.o $(CLASS_T_OBJ) $(PAGES_OBJ) \
+        $(DEC_TOOL:%.c=$B/%.o) $(DEC_LIB)
 	$(PAGES_LINK)
 
 $B/pages/written: $(PAGES_PROG) $(wildcard tools/pages/*.sh tools/pages/*.1) CITATION.cff

@@ -28,7 +28,7 @@ each() {
 }
 
 for p in $programs; do
-    [ "$p" = ted4conf ] || "$b/pages/$p" man "$date" >"$man/$p.1"
+    [ -e "tools/pages/$p.1" ] || "$b/pages/$p" man "$date" >"$man/$p.1"
 done
 for s in $subcommands; do "$b/pages/ted4conf" "$s" man "$date" >"$man/ted4conf-$s.1"; done
 for page in tools/pages/*.1; do sed "s/@DATE@/$date/" "$page" >"$man/${page##*/}"; done
@@ -48,3 +48,5 @@ each fish >"$b/pages/cases"
 for p in $programs; do grep "^complete -c $p " "$b/pages/cases" >"$fish/$p.fish"; done
 rm "$b/pages/cases"
 echo "complete -c ted4conf -n __fish_use_subcommand -x -a '$subcommands'" >>"$fish/ted4conf.fish"
+echo "complete -c ted4tolerance -n __fish_use_subcommand -x -a 'judge table'" \
+    >>"$fish/ted4tolerance.fish"

@@ -1,0 +1,28 @@
+/* json_file.c - see json_file.h.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include "json_file.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli.h"
+
+json_t *ted4_json_load(const char *path, char *why, size_t why_size)
+{
+    json_error_t e;
+    size_t size;
+    uint8_t *const data = ted4_read_file(path, &size);
+    json_t *json;
+
+    if (data == NULL) {
+        snprintf(why, why_size, "%s", strerror(errno));
+        return NULL;
+    }
+    json = json_loadb((const char *)data, size, JSON_REJECT_DUPLICATES, &e);
+    if (json == NULL)
+        snprintf(why, why_size, "line %d: %s", e.line, e.text);
+    free(data);
+    return json;
+}
