@@ -14,9 +14,10 @@ enum { MOST = 1000 }; /* bytes of a line that are shown */
 typedef struct {
     const char *word;
     json_t *list; /* NULL: standard output */
+    size_t n;     /* lines so far */
 } sink;
 
-static void put(const sink *to, const uint8_t *line, size_t n)
+static void put(sink *to, const uint8_t *line, size_t n)
 {
     const size_t word = strlen(to->word);
     char text[MOST + 1];
@@ -27,13 +28,14 @@ static void put(const sink *to, const uint8_t *line, size_t n)
     for (size_t i = 0; i < n; i++)
         text[i] = (char)(line[i] >= 0x20 && line[i] < 0x7f ? line[i] : '?');
     text[n] = 0;
+    to->n++;
     if (to->list != NULL)
         json_array_append_new(to->list, json_string(text));
     else
         printf("%s\n", text);
 }
 
-static void tell(const sink *to, const uint8_t *data, size_t size)
+static void tell(sink *to, const uint8_t *data, size_t size)
 {
     ted4_chunk_view c;
 
@@ -50,16 +52,17 @@ static void tell(const sink *to, const uint8_t *data, size_t size)
     }
 }
 
-void ted4_meta_lines_print(const uint8_t *data, size_t size, const char *word)
+size_t ted4_meta_lines_print(const uint8_t *data, size_t size, const char *word)
 {
-    const sink to = { word, NULL };
+    sink to = { .word = word };
 
     tell(&to, data, size);
+    return to.n;
 }
 
 json_t *ted4_meta_lines_json(const uint8_t *data, size_t size, const char *word)
 {
-    const sink to = { word, json_array() };
+    sink to = { word, json_array(), 0 };
 
     if (to.list != NULL)
         tell(&to, data, size);

@@ -292,7 +292,7 @@ static void print_ancillary(const uint8_t *data, size_t size)
     char text[100];
 
     for (int i = 0; i < N_DESCRIBING; i++)
-        ted4_meta_lines_print(data, size, DESCRIBING[i]);
+        (void)ted4_meta_lines_print(data, size, DESCRIBING[i]);
     for (size_t at = TED4_FILE_HEADER; ted4_chunks_next(data, size, &at, &c);) {
         if ((c.flags & TED4_CHUNK_IS_CRITICAL) != 0)
             continue;
@@ -395,8 +395,9 @@ static int show(const settings *s, const ted4_info *info, const ted4_budget *b, 
             print_header(b);
         if (s->on[OPT_BUDGET])
             print_budget(b, size);
-        if (s->on[OPT_WHY])
-            ted4_meta_lines_print(data, size, "capacity");
+        if (s->on[OPT_WHY] && ted4_meta_lines_print(data, size, "capacity") == 0)
+            fprintf(stderr, "ted4info: note: %s: the file does not say why; ted4enc --why does\n",
+                    s->input);
     }
     return TED4_EXIT_FINE;
 }

@@ -62,9 +62,10 @@ void ted4_check_report(const ted4_dataset *d, const ted4_train_options *options,
     char rate[32];
 
     if (!json) {
-        if (d != NULL)
-            ted4_dataset_print(d, stdout);
-        if (d != NULL && d->n_frames > 1 && d->rate == 0) {
+        if (d == NULL || error != NULL)
+            return;
+        ted4_dataset_print(d, stdout);
+        if (d->n_frames > 1 && d->rate == 0) {
             file_rate(d, options, rate, sizeof rate);
             printf("            (the file will say %s frames/s)\n", rate);
         }

@@ -30,6 +30,14 @@ expect check_json_missing 3 "$out/none: no such folder" "$enc" "$out/none" --che
 "$enc" "$out/none" --check --json 2>/dev/null >"$out/json"
 check check_json_error "$out/json" "{\"error\":\"$out/none: no such folder"
 
+# With something wrong, that alone.
+mkdir "$out/broken"
+cp -R "$out/scene/." "$out/broken"
+first=$(find "$out/broken" -name '*.png' | sort | head -n 1)
+head -c 100 "$first" >"$out/part" && cp "$out/part" "$first"
+"$enc" "$out/broken" --check 2>"$out/err" >"$out/text"
+equal check_wrong "$? $(cat "$out/text")" '3 '
+
 # Names that are not UTF-8, and a message that is cut inside a letter, are JSON all the same.
 odd=$(printf 'no\377'); unknown=$(printf '\357\277\275')
 "$enc" "$out/$odd" --check --json 2>/dev/null >"$out/json"

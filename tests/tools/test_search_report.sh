@@ -50,6 +50,8 @@ encode told --why --log "$out/told.jsonl" --checkpoint "$out/told.checkpoint" --
 equal resumed_log "$(logged told)" "$n"
 cmp -s "$out/told.ted4" "$out/first.ted4" && ok resumed_file || fail resumed_file "another file"
 
+expect silent_why 0 "ted4info: note: $out/silent.ted4: the file does not say why" \
+    "$TED4_BUILD/ted4info" "$out/silent.ted4" --why
 encode fixed --why --log "$out/fixed.jsonl" --capacity fixed
 equal fixed_log "$(logged fixed)" 0
 equal fixed_file "$("$TED4_BUILD/ted4info" "$out/fixed.ted4" --why | grep '^capacity')" \
