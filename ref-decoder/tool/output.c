@@ -29,7 +29,7 @@ static int name_temporary(char out[TED4_PATH_SIZE], const char *path)
  * Returns 0, or -1 with errno set. */
 static int find_place(char place[TED4_PATH_SIZE], const char *path)
 {
-    char *const real = access(path, F_OK) == 0 ? realpath(path, NULL) : NULL;
+    char *const real = realpath(path, NULL);
     const int n = snprintf(place, TED4_PATH_SIZE, "%s", real != NULL ? real : path);
 
     free(real);
@@ -46,12 +46,13 @@ static FILE *create(const char *temporary, const char *place)
     struct stat there;
     const int replaces = stat(place, &there) == 0 && S_ISREG(there.st_mode);
     const int fd = open(temporary, O_WRONLY | O_CREAT | O_TRUNC, replaces ? 0600 : 0666);
+    FILE *const f = fd < 0 ? NULL : fdopen(fd, "wb");
 
-    if (fd < 0)
-        return NULL;
-    if (replaces)
+    if (f != NULL && replaces)
         (void)fchmod(fd, there.st_mode & 0777); /* a file system may have no modes */
-    return fdopen(fd, "wb");
+    else if (f == NULL && fd >= 0)
+        close(fd);
+    return f;
 }
 
 int ted4_output_open(ted4_output *o, const char *path)

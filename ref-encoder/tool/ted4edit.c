@@ -95,7 +95,8 @@ static int is_line(const char *text)
     return equals != NULL && equals != text && ted4_edit_is_text(text);
 }
 
-/* Is the line, KEY=VALUE, one whose value may be any text, or a date, or none? */
+/* Is the value of the line, KEY=VALUE, one that its key may have? Only created asks for a form;
+ * with an empty value the line is removed. */
 static int has_date(const char *line)
 {
     static const char key[] = "created=";
@@ -249,7 +250,8 @@ static int add_cameras(ted4_edit *e, const settings *s, const ted4_info *info, c
 
     if (ted4_camera_list_load(&list, file, why, sizeof why) != 0)
         return failed(file, why);
-    warn_of_list(&list, file);
+    if (!s->quiet)
+        warn_of_list(&list, file);
     drop_cameras(e, kind, up);
 
     uint8_t *payload = ted4_describe_listed(&list, info->frames, kind, s->has_up ? s->up : up,
