@@ -11,6 +11,7 @@
 import ctypes as c
 import operator
 import os
+import threading
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -71,6 +72,7 @@ class Ted4Error(ValueError):
     text."""
 
     def __init__(self, code, offset=None):
+        self._code = code
         self.verdict = _library.ted4_verdict_name(_library.ted4_status_verdict(code)).decode()
         self.id, self.section, self.text = (
             getattr(_library, f"ted4_status_{name}")(code).decode()
@@ -78,6 +80,10 @@ class Ted4Error(ValueError):
         self.offset = offset if self.verdict in ("invalid", "unsupported") else None
         where = "" if self.offset is None else f" at byte {self.offset}"
         super().__init__(f"{self.id}{where}: {self.text}")
+
+    def __reduce__(self):
+        # Other processes make it again by the code: an exception alone would keep only its text.
+        return type(self), (self._code, self.offset), self.__dict__
 
 
 @dataclass(frozen=True)
@@ -101,7 +107,8 @@ class Gaussians:
 
 
 class Scene:
-    """A decoded file."""
+    """A decoded file. Threads may share it; their queries are answered one after another. For
+    queries at the same time, each thread opens a Scene of its own."""
 
     def __init__(self, data, max_bytes=0, max_work=0):
         """data: the bytes of a whole file. max_bytes: of memory, 0: 4 GiB; max_work: steps of spec
@@ -109,6 +116,7 @@ class Scene:
         if not (0 <= max_bytes < 1 << 64 and 0 <= max_work < 1 << 64):
             raise ValueError("max_bytes and max_work are from 0 to 2^64 - 1")
         self._scene, self._recon = c.c_void_p(), c.c_void_p()
+        self._lock = threading.Lock()  # of _recon and its arrays, which the next query overwrites
         self._options = _Options(max_bytes=max_bytes, max_work=max_work)
         error, data = _Error(), bytes(data)
         if _library.ted4_decode(data, c.c_size_t(len(data)), c.byref(self._options),
@@ -136,12 +144,16 @@ class Scene:
         if not 0 <= num <= den < _DEN_END:
             num, den = 1, 0  # refused by the library, which a larger number may not reach as it is
         x, y, z = camera
+        with self._lock:
+            return self._queried(_Query(num, den, (_f32 * 3)(x, y, z)))
+
+    def _queried(self, query):
         if not self._recon:
             code = _library.ted4_recon_new(c.byref(self._recon), self._scene,
                                            c.byref(self._options))
             if code:
                 raise Ted4Error(code)
-        query, g = _Query(num, den, (_f32 * 3)(x, y, z)), _Gaussians()
+        g = _Gaussians()
         code = _library.ted4_recon_query(self._recon, c.byref(query), None, c.byref(g))
         if code:
             raise Ted4Error(code)

@@ -148,7 +148,9 @@ if [ -n "$python" ]; then
     export TED4_LIBRARY=$shared PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=python
     if "$python" - "$vector" "$hash" "$out" >"$out/said" 2>&1 <<'PYTHON'
 import copy
+import pickle
 import sys
+import threading
 import numpy as np
 import ted4
 
@@ -192,6 +194,27 @@ for wrong, what in ((lambda: scene.gaussians(0.5, 1), TypeError),
         raise AssertionError(what)
     except what:
         pass
+# Threads that share a scene get the Gaussians of the times that they ask for.
+hashes, wrong = [scene.frame(j).hash for j in range(scene.frames)], []
+def ask(j):
+    for _ in range(200):
+        g = scene.frame(j)
+        if g.hash != hashes[j]:
+            wrong.append(j)
+sys.setswitchinterval(1e-6)
+threads = [threading.Thread(target=ask, args=(j,)) for j in range(min(4, scene.frames))]
+for thread in threads:
+    thread.start()
+for thread in threads:
+    thread.join()
+assert not wrong, f"{len(wrong)} wrong frames"
+# A refusal says the same in another process.
+try:
+    ted4.Scene(b"x" * 40)
+except ted4.Ted4Error as refusal:
+    for other in (pickle.loads(pickle.dumps(refusal)), copy.copy(refusal)):
+        assert type(other) is ted4.Ted4Error and str(other) == str(refusal), repr(other)
+        assert vars(other) == vars(refusal), vars(other)
 # Where times need larger denominators than queries have, they are rounded (R-HDR-005).
 scene.frames, last = 2**25 - 1, 2**24 - 1
 for j, num in ((29, 14), (11, 6), (2**25 - 2, last)):
