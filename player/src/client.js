@@ -1,5 +1,5 @@
 // client.js - decodes in a worker (worker.js). Every call gives a promise; calls of one client are
-// answered in order.
+// answered in order. When the worker fails or is terminated, all calls are rejected.
 // SPDX-License-Identifier: BSD-2-Clause
 import { Ted4Error } from "./decoder.js";
 import { timeOfFrame } from "./times.js";
@@ -9,52 +9,69 @@ function restored(e) {
   return new Ted4Error(e.verdict, e.id, e.offset, e.section, e.text);
 }
 
+// An address as text, in full: the worker has no page that it could be relative to.
+function absolute(address) {
+  const { document, location } = globalThis;
+  return new URL(address, document?.baseURI ?? location?.href).href;
+}
+
+// A buffer to be transferred: of an ArrayBuffer itself, of a view a copy of its bytes.
+function owned(bytes) {
+  if (bytes instanceof ArrayBuffer) return bytes;
+  return new Uint8Array(bytes.buffer, bytes.byteOffset, bytes.byteLength).slice().buffer;
+}
+
 export class Ted4Client {
   #worker;
   #waiting = new Map();
   #calls = 0;
   #scenes = 0;
+  #end = null; // why the worker answers no more
 
   // worker: one that runs worker.js; made from the file beside this one if it is missing.
   constructor(worker = new Worker(new URL("./worker.js", import.meta.url), { type: "module" })) {
     this.#worker = worker;
     worker.onmessage = ({ data: { call, value, error } }) => {
-      const { resolve, reject } = this.#waiting.get(call);
+      const waiting = this.#waiting.get(call);
       this.#waiting.delete(call);
-      if (error) reject(restored(error));
-      else resolve(value);
+      if (error) waiting?.reject(restored(error));
+      else waiting?.resolve(value);
     };
-    worker.onerror = (e) => {
-      for (const { reject } of this.#waiting.values()) reject(new Error(e.message));
-      this.#waiting.clear();
-    };
+    // A worker whose script cannot be fetched says nothing of it.
+    worker.onerror = (e) => this.#finish(e.message || "the worker does not start");
   }
 
-  #ask(message, transfer = []) {
+  #finish(reason) {
+    this.#end ??= new Error(reason);
+    for (const { reject } of this.#waiting.values()) reject(this.#end);
+    this.#waiting.clear();
+  }
+
+  async #ask(message, transfer = []) {
+    if (this.#end !== null) throw this.#end;
     const call = ++this.#calls;
-    return new Promise((resolve, reject) => {
-      this.#waiting.set(call, { resolve, reject });
-      this.#worker.postMessage({ call, ...message }, transfer);
-    });
+    this.#worker.postMessage({ call, ...message }, transfer);
+    return new Promise((resolve, reject) => { this.#waiting.set(call, { resolve, reject }); });
   }
 
   // source: of the module, as Decoder.load takes it, but for a Response.
-  load(source) {
-    return this.#ask({ type: "load", source });
+  async load(source) {
+    const isAddress = typeof source === "string" || source instanceof URL;
+    return this.#ask({ type: "load", source: isAddress ? absolute(source) : source });
   }
 
   // The file's scene: { info, bytesByElement, milliseconds, gaussians(num, den, camera), frame(j,
-  // camera), close() }. Rejects with Ted4Error. bytes go to the worker and are gone here.
+  // camera), close() }. Rejects with Ted4Error. An ArrayBuffer goes to the worker and is gone here;
+  // of a Uint8Array the worker gets a copy.
   async open(bytes, options = {}) {
-    const scene = ++this.#scenes;
-    const buffer = bytes instanceof ArrayBuffer ? bytes : bytes.slice().buffer;
+    const scene = ++this.#scenes, buffer = owned(bytes);
     const opened = await this.#ask({ type: "open", scene, bytes: buffer, options }, [buffer]);
     const gaussians = (num, den, camera = [0, 0, 0]) =>
       this.#ask({ type: "gaussians", scene, num, den, camera });
     return {
       ...opened,
       gaussians,
-      frame: (j, camera) => {
+      frame: async (j, camera) => {
         const { num, den } = timeOfFrame(j, opened.info);
         return gaussians(num, den, camera);
       },
@@ -64,5 +81,6 @@ export class Ted4Client {
 
   terminate() {
     this.#worker.terminate();
+    this.#finish("the worker is terminated");
   }
 }

@@ -10,6 +10,8 @@ export class Ted4Error extends Error {
   readonly offset?: number;
   readonly section: string;
   readonly text: string;
+  constructor(verdict: Verdict, id: string, offset: number | undefined, section: string,
+    text: string);
 }
 
 export interface OpenOptions {
@@ -79,7 +81,9 @@ export function timeOfSeconds(text: string, info: SceneInfo): Time | undefined;
 /** Of "#t=SECONDS" or "#frame=J" (specification, 18); undefined if it says no time. */
 export function timeOfFragment(fragment: string, info: SceneInfo): Time | undefined;
 
+/** A decoded file, from Decoder.open. */
 export class Scene {
+  private constructor();
   readonly info: SceneInfo;
   readonly isClassX: boolean;
   /** Arrays lie in the decoder's memory and stay as they are until the next call. */
@@ -93,6 +97,8 @@ export class Scene {
 }
 
 export class Decoder {
+  private constructor();
+  /** An address is fetched, which Node does not do for addresses that begin with file: */
   static load(source: Source): Promise<Decoder>;
   readonly module: WebAssembly.Module;
   /** Throws Ted4Error. */
@@ -117,9 +123,13 @@ export interface ClientScene {
   close(): Promise<void>;
 }
 
+/** Every call gives a promise. All are rejected once the worker has failed or is terminated. */
 export class Ted4Client {
   constructor(worker?: Worker);
+  /** An address is relative to the page. */
   load(source: WebAssembly.Module | BufferSource | string | URL): Promise<void>;
+  /** An ArrayBuffer goes to the worker and is gone (detached) afterwards; a Uint8Array is copied.
+   *  Rejects with Ted4Error. */
   open(bytes: Uint8Array | ArrayBuffer, options?: OpenOptions): Promise<ClientScene>;
   terminate(): void;
 }

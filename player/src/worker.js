@@ -25,6 +25,7 @@ const actions = {
     return Decoder.load(source).then((d) => { decoder = d; });
   },
   open({ scene, bytes, options }) {
+    if (decoder === null) throw new Error("no decoder: load() comes before open()");
     const start = performance.now();
     const opened = decoder.open(bytes, options);
     scenes.set(scene, opened);
@@ -34,6 +35,7 @@ const actions = {
     };
   },
   gaussians({ scene, num, den, camera }) {
+    if (!scenes.has(scene)) throw new Error("the scene is closed");
     const start = performance.now();
     const result = copied(scenes.get(scene).gaussians(num, den, camera));
     result.milliseconds = performance.now() - start;

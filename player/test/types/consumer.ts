@@ -2,7 +2,9 @@
 // types.mjs has it compiled. SPDX-License-Identifier: BSD-2-Clause
 import { SplatMesh, type PackedSplats } from "@sparkjsdev/spark";
 import type { GraphicsDevice, GSplatContainer, GSplatData, Quat } from "playcanvas";
-import { Decoder, Ted4Client, timeOfFragment, type Gaussians, type Vector } from "ted4";
+import {
+  Decoder, Scene, Ted4Client, Ted4Error, timeOfFragment, type Gaussians, type Vector,
+} from "ted4";
 import { drawAsAnnexI } from "ted4/adapters/playcanvas-kernel.js";
 import { createContainer, updateContainer } from "ted4/adapters/playcanvas.js";
 import { createPackedSplats, updatePackedSplats } from "ted4/adapters/spark.js";
@@ -26,11 +28,14 @@ export async function useAll(device: GraphicsDevice, bytes: Uint8Array): Promise
   const { asset, rotation } = await source.getFrame(source.frameCount - 1);
   console.log(asset.toUpperCase(), data.numSplats);
   source.destroy();
+  console.log(new Ted4Error("limit", "limit.memory", undefined, "13.4", "no memory").offset);
   return rotation;
 }
 
 export async function useInWorker(bytes: ArrayBuffer): Promise<FrameSource<GSplatData>> {
-  const scene = await new Ted4Client().open(bytes);
+  const client = new Ted4Client();
+  await client.load(new URL("ted4.wasm", document.baseURI));
+  const scene = await client.open(bytes);
   return new FrameSource(scene, (frame) => frame, eye, [0, 0, 1]);
 }
 
@@ -43,4 +48,10 @@ export function misuse(device: GraphicsDevice, source: FrameSource<string>): voi
   source.frames();
   // @ts-expect-error: only the constructor sets it.
   source.frameCount = 3;
+  // @ts-expect-error: decoders come from Decoder.load.
+  new Decoder();
+  // @ts-expect-error: scenes come from Decoder.open.
+  new Scene();
+  // @ts-expect-error: identifier, section and text are missing.
+  new Ted4Error("text");
 }
