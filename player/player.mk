@@ -33,10 +33,19 @@ player-conformance: $W/ted4.wasm $B/ted4conf
 	TED4_WASM="$(abspath $W/ted4.wasm)" \
 	    $B/ted4conf run --decoder 'node player/test/driver.mjs' \
 	    --memory 0 --once --timeout 60
+
+# The package for npm. The module lies beside package.json, where git ignores it.
+PACKAGE_SRC = $(addprefix player/,package.json README.md) \
+              $(wildcard player/src/* player/adapters/*.js player/adapters/*.d.ts)
+player-package: $W/ted4.tgz
+$W/ted4.tgz: $W/ted4.wasm $(PACKAGE_SRC)
+	cp $< player/ted4.wasm
+	cd player && npm pack --silent --pack-destination "$(abspath $W)" >"$(abspath $W)/packed"
+	mv "$W/$$(cat $W/packed)" $@
 DEPS_PLAYER = clang-19 lld-19 nodejs $(if $(shell command -v npm),,npm)
 deps-player: deps
 	@$(call INSTALL_DEBIAN,$(DEPS_PLAYER))
-.PHONY: player-wasm player-test player-conformance deps-player
+.PHONY: player-wasm player-test player-conformance player-package deps-player
 
 # The page (page/), by esbuild and the packages that player/package-lock.json pins; they lie in the
 # build folder. The licence of PlayCanvas comes first in player.js.
@@ -68,7 +77,7 @@ player-html: player
 .PHONY: player player-html
 
 # The page, and those of the adapters, in headless Chromium, with a small file that is trained for
-# it; what splat-transform makes of that file's exports; types, by TypeScript.
+# it; what splat-transform makes of that file's exports; the package, and its types by TypeScript.
 T       = $W/test
 $W/adapters/index.html: player/adapters/pages/index.html
 	@mkdir -p $(@D)
@@ -76,12 +85,14 @@ $W/adapters/index.html: player/adapters/pages/index.html
 $W/adapters/%.js: player/adapters/pages/%.js $(PAGE_SRC) $(wildcard player/adapters/pages/*.js) \
     $(NPM)/installed
 	$(ESBUILD) $< --outfile=$@
-test-player: player $(ADAPTERS) $T/occluder.ted4 $B/ted4dec $B/ted4edit
+test-player: player $(ADAPTERS) $W/ted4.tgz $T/occluder.ted4 $B/ted4dec $B/ted4edit
 	TED4_PLAYER="$(abspath $W)" TED4_SCENE="$(abspath $T/occluder.ted4)" \
 	TED4_OUT="$(abspath $T)" TED4_PROGRAMS="$(abspath $B)" \
 	TED4_SPLAT_TRANSFORM="$(abspath $(BIN)/splat-transform)" \
+	TED4_PACKAGE="$(abspath $W/ted4.tgz)" \
 	TED4_MODULES="$(abspath $(NPM)/node_modules)" node --test --test-concurrency=1 \
-	    player/test/*.browser.mjs player/test/conversions.mjs player/test/types.mjs
+	    player/test/*.browser.mjs \
+	    $(patsubst %,player/test/%.mjs,conversions package types)
 $T/occluder.ted4: | $B/ted4scene $B/ted4enc
 	@mkdir -p $T
 	$B/ted4scene occluder -o $T/scene -f

@@ -1,0 +1,41 @@
+// package.mjs - the package as npm installs it (make player-package): it holds all that it exports,
+// and the program of the README runs in Node. SPDX-License-Identifier: BSD-2-Clause
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import {
+  copyFileSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync,
+} from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after, before, test } from "node:test";
+import { needed, SCENE } from "./fixture.mjs";
+
+const README = new URL("../README.md", import.meta.url);
+let folder, installed;
+
+before(() => {
+  folder = mkdtempSync(join(tmpdir(), "ted4-package-"));
+  installed = join(folder, "node_modules/ted4");
+  writeFileSync(join(folder, "package.json"), `{ "type": "module" }`);
+  execFileSync("npm", ["install", "--offline", "--no-audit", "--no-fund", "--loglevel=error",
+    needed("TED4_PACKAGE")], { cwd: folder });
+});
+
+after(() => rmSync(folder, { recursive: true }));
+
+test("the package holds all that it exports", () => {
+  const { exports } = JSON.parse(readFileSync(join(installed, "package.json"), "utf8"));
+  const paths = Object.values(exports)
+    .flatMap((target) => (typeof target === "string" ? [target] : Object.values(target)))
+    .filter((path) => !path.includes("*"));
+  assert.ok(paths.includes("./ted4.wasm"));
+  for (const path of paths) assert.ok(existsSync(join(installed, path)), path);
+});
+
+test("the program of the README runs in Node", () => {
+  const [, program] = /```js\n([^]*?)```/.exec(readFileSync(README, "utf8"));
+  copyFileSync(SCENE, join(folder, "scene.ted4"));
+  writeFileSync(join(folder, "program.js"), `${program}\nconsole.log(g.n, scene.info.gaussians);`);
+  const said = execFileSync("node", ["program.js"], { cwd: folder, encoding: "utf8" });
+  assert.match(said, /^([1-9]\d*) \1\n$/);
+});
