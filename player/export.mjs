@@ -31,12 +31,14 @@ export function exportPage(player, scene, name) {
 }
 
 function main([player, file, out]) {
-  if (out === undefined) throw new Error("usage: node export.mjs PLAYER SCENE.ted4 OUT.html");
+  if (!player || !file || !out)
+    throw new Error("usage: node export.mjs PLAYER SCENE.ted4 OUT.html");
   const scene = readFileSync(file);
   if (!scene.subarray(0, MAGIC.length).equals(MAGIC)) throw new Error(`${file}: not a TED4 file`);
   const page = exportPage(player, scene, basename(file));
   writeFileSync(out, page);
-  console.log(`${out}: ${page.length} bytes, ${page.length - scene.length} more than the scene`);
+  const size = Buffer.byteLength(page);
+  console.log(`${out}: ${size} bytes, ${size - scene.length} more than the scene`);
 }
 
 if (process.argv[1] && realpathSync(process.argv[1]) === fileURLToPath(import.meta.url)) {

@@ -251,8 +251,9 @@ test("a broken file is refused with identifier and offset", async () => {
 test("the page that holds everything opens by file:// and plays", async (t) => {
   const file = join(OUT, "scene.html");
   const program = fileURLToPath(new URL("../export.mjs", import.meta.url));
-  execFileSync("node", [program, PLAYER, SCENE, file]);
-  const overhead = readFileSync(file).length - readFileSync(SCENE).length;
+  const said = execFileSync("node", [program, PLAYER, SCENE, file], { encoding: "utf8" });
+  const { length } = readFileSync(file), overhead = length - readFileSync(SCENE).length;
+  assert.ok(said.includes(`: ${length} bytes, ${overhead} more than the scene`), said);
   t.diagnostic(`${overhead} bytes more than the scene`);
   assert.ok(overhead <= MOST_OVERHEAD);
   const alone = await browser.page(CAMERA.width, CAMERA.height);
