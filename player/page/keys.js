@@ -16,14 +16,16 @@ export function bindKeys(player, timeline) {
   const { clock, navigation } = player;
   const second = () => Math.max(1, Math.round(clock.rate));
   const help = () => at("help").showModal();
-  const actions = {
-    " ": timeline.toggle,
+  const steps = {
     ",": () => clock.step(-1),
     ".": () => clock.step(1),
     ArrowLeft: () => clock.step(-second()),
     ArrowRight: () => clock.step(second()),
     Home: () => clock.seek(0),
     End: () => clock.seek(clock.frames - 1),
+  };
+  const switches = {
+    " ": timeline.toggle,
     0: () => { if (player.cameras.length > 0) player.useCamera(0); },
     p: () => { player.followsPath = !player.followsPath; },
     h: () => document.body.classList.toggle("bare"),
@@ -32,8 +34,11 @@ export function bindKeys(player, timeline) {
   at("show-help").addEventListener("click", help);
   addEventListener("keydown", (e) => {
     if (e.ctrlKey || e.metaKey || e.altKey || belongsTo(e.target, e.key)) return;
-    const action = actions[e.key];
-    if (action) action();
+    // Caps Lock makes capital letters.
+    const key = e.key.length === 1 ? e.key.toLowerCase() : e.key;
+    const action = steps[key] ?? switches[key];
+    // A key that is held steps on, but switches once.
+    if (action && !(e.repeat && key in switches)) action();
     if (navigation.press(e) || action) e.preventDefault();
   });
   addEventListener("keyup", (e) => navigation.release(e));

@@ -2,7 +2,7 @@
 // place; pan; come nearer; fly.
 // SPDX-License-Identifier: BSD-2-Clause
 import {
-  add, centreOf, down, forward, moved, orbited, right, scaled,
+  add, centreOf, down, fitted, forward, moved, orbited, right, scaled,
 } from "./camera.js";
 
 const TURN = 0.005; // radians a pixel
@@ -19,11 +19,13 @@ export class Navigation {
   up = [0, -1, 0];
   distance = 1; // of the pivot, straight ahead
   looksAround = false;
+  #canvas;
   #pointers = new Map();
   #keys = new Set();
   #isFast = false;
 
   constructor(canvas) {
+    this.#canvas = canvas;
     canvas.addEventListener("pointerdown", (e) => {
       canvas.setPointerCapture(e.pointerId);
       this.#pointers.set(e.pointerId, e);
@@ -63,10 +65,12 @@ export class Navigation {
     this.camera = orbited(this.camera, pivot, this.up, -sign * TURN * dx, -sign * TURN * dy);
   }
 
+  // By pixels of the page; the pivot stays under the pointer.
   #pan(dx, dy) {
-    const size = this.distance / this.camera.fx * (globalThis.devicePixelRatio ?? 1);
+    const { fx, fy } = fitted(this.camera, this.#canvas.clientWidth, this.#canvas.clientHeight);
+    const x = -dx * this.distance / fx, y = -dy * this.distance / fy;
     this.camera = moved(this.camera,
-      add(scaled(right(this.camera), -dx * size), scaled(down(this.camera), -dy * size)));
+      add(scaled(right(this.camera), x), scaled(down(this.camera), y)));
   }
 
   // The pivot stays, and its distance is multiplied.

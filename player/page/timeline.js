@@ -2,8 +2,16 @@
 
 const at = (id) => document.getElementById(id);
 
+// The controls take several lines where the window is narrow. The style sheet keeps them free.
+function tellHeight() {
+  const { style } = document.documentElement, timeline = at("timeline");
+  new ResizeObserver(() => style.setProperty("--bar", `${timeline.offsetHeight}px`))
+    .observe(timeline);
+}
+
 // Connects the controls with a clock. show() brings them up to date.
 export function bindTimeline(clock) {
+  tellHeight();
   const time = at("time");
   const toggle = () => (clock.isPlaying ? clock.pause() : clock.play(performance.now()));
   at("play").addEventListener("click", toggle);

@@ -58,6 +58,7 @@ export class View {
       this.#hasOrder = true;
       this.#frames = Math.max(this.#frames, FRAMES_AFTER_SORT);
     });
+    options.graphicsDevice.on("devicerestored", () => this.#redraw());
     this.#app.on("postrender", () => this.#endFrame());
     this.#app.start();
   }
@@ -69,6 +70,12 @@ export class View {
     this.#isMarked = this.#hasOrder = false;
     this.#frames--;
     if (isLost && this.#entity !== null) this.#mark();
+  }
+
+  // What was drawn is gone with the context in which it was.
+  #redraw() {
+    if (this.#entity === null) this.#change();
+    else this.#mark();
   }
 
   // All Gaussians are taken from the container again.

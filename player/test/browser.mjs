@@ -70,6 +70,7 @@ export class Browser {
 export class Page {
   #send;
   #loaded = null;
+  #choosing = null;
   errors = []; // uncaught exceptions, and errors on the console
   requests = []; // addresses
 
@@ -86,6 +87,7 @@ export class Page {
 
   receive(method, params) {
     if (method === "Page.loadEventFired") this.#loaded?.();
+    if (method === "Page.fileChooserOpened") this.#choosing?.(params.backendNodeId);
     if (method === "Runtime.exceptionThrown")
       this.errors.push(params.exceptionDetails.exception?.description ??
         params.exceptionDetails.text);
@@ -94,9 +96,10 @@ export class Page {
     if (method === "Network.requestWillBeSent") this.requests.push(params.request.url);
   }
 
-  resize(width, height) {
+  // ratio: pixels of the screen per pixel of the page.
+  resize(width, height, ratio = 1) {
     return this.#send("Emulation.setDeviceMetricsOverride",
-      { width, height, deviceScaleFactor: 1, mobile: false });
+      { width, height, deviceScaleFactor: ratio, mobile: false });
   }
 
   async open(url) {
@@ -129,10 +132,22 @@ export class Page {
     return (await this.#send("Page.captureScreenshot", { format: "png" })).data;
   }
 
-  async press(key, code = key) {
-    const text = key.length === 1 ? key : undefined;
-    await this.#send("Input.dispatchKeyEvent", { type: "keyDown", key, code, text });
+  // times: how often the key is sent while it is down.
+  async press(key, code = key, times = 1) {
+    const text = key === "Enter" ? "\r" : key.length === 1 ? key : undefined;
+    for (let i = 0; i < times; i++)
+      await this.#send("Input.dispatchKeyEvent",
+        { type: "keyDown", key, code, text, autoRepeat: i > 0 });
     await this.#send("Input.dispatchKeyEvent", { type: "keyUp", key, code });
+  }
+
+  // Chooses a file in the dialog that the action opens.
+  async choose(file, action) {
+    await this.#send("Page.setInterceptFileChooserDialog", { enabled: true });
+    const opened = new Promise((resolve) => { this.#choosing = resolve; });
+    await action();
+    const backendNodeId = await opened;
+    await this.#send("DOM.setFileInputFiles", { files: [file], backendNodeId });
   }
 
   async hold(key, code, milliseconds) {
@@ -150,11 +165,16 @@ export class Page {
     await touch("touchEnd", []);
   }
 
-  async drag(x, y, toX, toY) {
+  async drag(x, y, toX, toY, button = "left") {
     const event = (type, px, py, buttons) => this.#send("Input.dispatchMouseEvent",
-      { type, x: px, y: py, button: "left", buttons, clickCount: 1 });
-    await event("mousePressed", x, y, 1);
-    await event("mouseMoved", toX, toY, 1);
+      { type, x: px, y: py, button, buttons, clickCount: 1 });
+    const down = button === "left" ? 1 : 2;
+    await event("mousePressed", x, y, down);
+    await event("mouseMoved", toX, toY, down);
     await event("mouseReleased", toX, toY, 0);
+  }
+
+  async wheel(x, y, deltaY) {
+    await this.#send("Input.dispatchMouseEvent", { type: "mouseWheel", x, y, deltaX: 0, deltaY });
   }
 }
