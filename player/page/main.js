@@ -3,8 +3,10 @@
 // SPDX-License-Identifier: BSD-2-Clause
 import workerText from "worker-text";
 import { Ted4Error } from "../src/decoder.js";
+import { bindCameraBox } from "./camera_box.js";
 import { bindKeys } from "./keys.js";
-import { showElements, showFile, showMessage, showStatistics } from "./panel.js";
+import { bindMessage, clearMessage, showMessage } from "./message.js";
+import { showElements, showFile, showStatistics } from "./panel.js";
 import { Player } from "./player.js";
 import { bindTimeline } from "./timeline.js";
 
@@ -26,8 +28,10 @@ function explain(name, error) {
 const wasm = embedded.wasm ?? new URL("ted4.wasm", document.baseURI).href;
 // Drawing and sorting take a core of their own, but not all the time.
 const workers = Array.from({ length: Math.min(navigator.hardwareConcurrency, 2) }, startWorker);
-const player = new Player(at("picture"), workers, wasm,
-  (error) => showMessage(explain(player.file.name, error)));
+const player = new Player(at("picture"), workers, wasm, (error) => {
+  if (error === null) clearMessage("time");
+  else showMessage(explain(player.file.name, error), "time");
+});
 
 function showPanel(isShown) {
   at("panel").hidden = !isShown;
@@ -43,22 +47,20 @@ function showOpened() {
   const { info } = player.file;
   at("background").value =
     `#${info.background.map((v) => v.toString(16).padStart(2, "0")).join("")}`;
-  at("camera").max = player.cameras.length;
-  at("camera").value = player.cameras.length > 0 ? 1 : "";
-  at("camera").disabled = player.cameras.length === 0;
-  at("cameras").textContent = player.cameras.length > 0 ? `of ${player.cameras.length}` : "none";
+  cameraBox.reset();
   at("follows-path").disabled = player.file.cameras.path.length === 0;
   timeline.reset();
 }
 
-// since: when the file was asked for; fragment: of its address.
-async function open(name, reading, since, fragment = "") {
-  showMessage("");
+// since: when the file was asked for; fragment(): of its address.
+async function open(name, reading, since, fragment) {
+  clearMessage();
   try {
-    await player.open(new Uint8Array(await reading), name, since, fragment);
+    if (!await player.open(reading, name, since, fragment)) return;
+    clearMessage();
     showOpened();
   } catch (error) {
-    showMessage(explain(name, error));
+    showMessage(explain(name, error), "file");
   }
 }
 
@@ -76,7 +78,11 @@ function bindFiles() {
   const openFile = (file) => {
     if (file) open(file.name, file.arrayBuffer(), performance.now());
   };
-  at("file").addEventListener("change", () => openFile(at("file").files[0]));
+  at("file").addEventListener("change", () => {
+    openFile(at("file").files[0]);
+    at("file").value = ""; // so that the same file may be chosen again
+  });
+  at("open").addEventListener("click", () => at("file").click());
   addEventListener("dragover", (e) => {
     e.preventDefault();
     document.body.classList.add("dropping");
@@ -94,10 +100,6 @@ function bindFiles() {
 function bindView() {
   at("show-panel").addEventListener("click", () => showPanel(at("panel").hidden));
   at("sizes").addEventListener("toggle", showSizes);
-  at("camera").addEventListener("change", () => {
-    const i = at("camera").valueAsNumber - 1;
-    if (i in player.cameras) player.useCamera(i);
-  });
   at("follows-path").addEventListener("change", () => {
     player.followsPath = at("follows-path").checked;
   });
@@ -121,22 +123,24 @@ function countPictures() {
   }, 1000);
 }
 
-const timeline = bindTimeline(player.clock);
+const timeline = bindTimeline(player.clock), cameraBox = bindCameraBox(player);
 bindKeys(player, timeline);
 bindFiles();
+bindMessage();
 bindView();
 countPictures();
 
 function frame() {
   timeline.show();
+  cameraBox.show();
   at("follows-path").checked = player.followsPath;
   requestAnimationFrame(frame);
 }
 requestAnimationFrame(frame);
 
 addEventListener("hashchange", () => player.seekFragment(location.hash));
-const address = new URLSearchParams(location.search).get("file");
-if (embedded.scene) open(embedded.name, embedded.scene, 0, location.hash);
-else if (address) open(address.split("/").pop(), read(address), 0, location.hash);
+const address = new URLSearchParams(location.search).get("file"), fragment = () => location.hash;
+if (embedded.scene) open(embedded.name, embedded.scene, 0, fragment);
+else if (address) open(address.split("/").pop(), read(address), 0, fragment);
 
 globalThis.ted4Player = player; // for scripts of the page

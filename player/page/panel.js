@@ -65,9 +65,3 @@ export function showStatistics({ file, statistics, sorting }, evaluated, drawn) 
     ["Pictures per second", count(drawn)],
   ]);
 }
-
-// Says in the page why a file is refused; "": nothing is wrong.
-export function showMessage(text) {
-  at("message").textContent = text;
-  at("message").hidden = text === "";
-}

@@ -24,7 +24,10 @@ export class Player {
   #view = null;
   #evaluators;
   #started = null; // the view
+  #opening = null; // the last file that was asked for
   #shown = null; // what the Gaussians on the screen were evaluated for
+  #gaussians = null; // on the screen
+  #unmeasured = null; // a camera of the file, until Gaussians have told where its pivot is
   #pending = new Map(); // what evaluations under way are for, by their numbers, in order
   #asked = 0; // the number of the last evaluation
   #pose = null; // the camera that the view was given
@@ -33,7 +36,7 @@ export class Player {
   #failed;
 
   // workers: one or more that run src/worker.js; wasm: the module's bytes, or its address;
-  // failed(error) hears of evaluations that fail.
+  // failed(error) hears of evaluations that fail, and null from those that do not.
   constructor(canvas, workers, wasm, failed) {
     this.#canvas = canvas;
     this.#failed = failed;
@@ -51,30 +54,48 @@ export class Player {
     this.#view.onFrame((now) => this.#tick(now), () => { this.statistics.drawn++; });
   }
 
-  // Shows a file from its start, or from the time that the fragment of its address says. since:
-  // when it was asked for. Rejects with Ted4Error; then what was there before stays.
-  async open(bytes, name, since = performance.now(), fragment = "") {
-    const opening = this.#evaluators.open(bytes);
+  // Shows a file from its start, or from the time that the fragment of its address says once the
+  // file is there. reading: its bytes, or a promise of them; since: when it was asked for;
+  // fragment(). Whether it is shown: not when another one was asked for in the meantime. Rejects
+  // with Ted4Error; then what was there before stays.
+  async open(reading, name, since = performance.now(), fragment = () => "") {
+    const opening = this.#opening = {};
+    try {
+      const opened = await this.#prepare(await reading);
+      if (opening !== this.#opening) opened.scene.close();
+      else this.#begin(opened, { name, since }, fragment());
+    } catch (error) {
+      if (opening === this.#opening) throw error;
+    }
+    return opening === this.#opening;
+  }
+
+  // A file that is decoded and not shown yet. start: { camera, distance }, where it has no cameras.
+  async #prepare(buffer) {
+    const bytes = new Uint8Array(buffer), decoding = this.#evaluators.open(bytes);
     // Starting to draw takes this thread as long as decoding takes the worker.
     this.#started ??= this.#startView();
-    const [{ scene, use }] = await Promise.all([opening, this.#started]);
-    const chunks = chunksOf(bytes), cameras = camerasOf(chunks);
-    const up = cameras.up ?? UP;
+    const [{ scene, use }] = await Promise.all([decoding, this.#started]);
+    const chunks = chunksOf(bytes), cameras = camerasOf(chunks), up = cameras.up ?? UP;
     const isSeen = cameras.cameras.length + cameras.path.length > 0;
     const start = isSeen ? null : startCamera(await scene.gaussians(0, 1), up);
+    return { bytes, scene, use, chunks, cameras, up, start };
+  }
+
+  #begin({ bytes, scene, use, chunks, cameras, up, start }, asked, fragment) {
     use();
     this.#pending.clear();
-    this.#shown = this.#followed = null;
+    this.#shown = this.#followed = this.#gaussians = this.#unmeasured = null;
     this.statistics.firstPicture = 0;
     this.file = {
-      name, bytes, since, info: scene.info, chunks: bytesByType(chunks), meta: metaOf(chunks),
+      ...asked, bytes, info: scene.info, chunks: bytesByType(chunks), meta: metaOf(chunks),
       cameras, milliseconds: scene.milliseconds,
     };
     this.clock.reset(scene.info.frames, scene.info.rate);
     this.#view.clear();
     this.#view.setBackground(scene.info.background);
     Object.assign(this.navigation, { up, ...start });
-    if (isSeen) this.useCamera(0, timeOfFragment(fragment, scene.info));
+    if (start === null) this.useCamera(0, timeOfFragment(fragment, scene.info));
     else this.seekFragment(fragment);
   }
 
@@ -92,8 +113,23 @@ export class Player {
   // Looks through a camera of the file, at its time or another one.
   useCamera(i, time = this.cameras[i]) {
     this.followsPath = false;
-    this.navigation.camera = this.cameras[i];
+    this.#place(this.cameras[i]);
     this.clock.seekTo(time);
+  }
+
+  // The camera of the file that is looked through, from 0; -1: none of them.
+  get cameraIndex() {
+    if (this.file === null) return -1;
+    const { cameras, path } = this.file.cameras, { camera } = this.navigation;
+    const i = cameras.indexOf(camera), onPath = i < 0 ? path.indexOf(camera) : -1;
+    return onPath < 0 ? i : cameras.length + onPath;
+  }
+
+  // Looks through a camera. Where its pivot is, the Gaussians of its time tell better than those
+  // that are on the screen, but they may be the same.
+  #place(camera) {
+    this.navigation.camera = this.#unmeasured = camera;
+    if (this.#gaussians !== null) this.navigation.distance = depthAhead(camera, this.#gaussians);
   }
 
   // Whether the camera is the one that the file's path has at the time that is shown. It ends when
@@ -113,7 +149,7 @@ export class Player {
     const time = this.clock.part;
     if (this.#followed === null || this.#followed.time === time) return;
     const { path } = this.file.cameras;
-    this.navigation.camera = cameraOnPath(path, placeOnPath(path, time));
+    this.#place(cameraOnPath(path, placeOnPath(path, time)));
     this.#followed = { camera: this.navigation.camera, time };
   }
 
@@ -135,7 +171,8 @@ export class Player {
     this.#evaluate();
     if (this.file === null) return;
     this.#followCamera();
-    if (this.statistics.firstPicture === 0 && this.isSettled) {
+    // While it plays, newer Gaussians are always on their way.
+    if (this.statistics.firstPicture === 0 && (this.#view.hasPicture || this.isSettled)) {
       this.statistics.firstPicture = now - this.file.since;
       this.#evaluators.share();
     }
@@ -168,7 +205,9 @@ export class Player {
     if (this.#shown === key || [...this.#pending.values()].at(-1) === key) return;
     this.#pending.set(number, key);
     this.#evaluators.gaussians(num, den, centre).then((g) => {
-      if (this.#isNext(number)) this.#show(g, key);
+      if (!this.#isNext(number)) return;
+      this.#show(g, key);
+      this.#failed(null);
     }).catch((error) => {
       if (!this.#isNext(number)) return;
       this.#shown = key; // and is not tried again
@@ -184,10 +223,11 @@ export class Player {
     return true;
   }
 
-  // The first Gaussians of a file that lists cameras tell where the pivot is.
   #show(g, key) {
-    if (this.#shown === null && this.cameras.length > 0)
-      this.navigation.distance = depthAhead(this.navigation.camera, g);
+    if (this.#unmeasured !== null && this.#unmeasured === this.navigation.camera)
+      this.navigation.distance = depthAhead(this.#unmeasured, g);
+    this.#unmeasured = null;
+    this.#gaussians = g;
     this.#shown = key;
     this.statistics.evaluate = g.milliseconds;
     this.statistics.evaluated++;

@@ -26,6 +26,7 @@ export class View {
   #isMarked = false;
   #hasOrder = false;
   sorting = 0; // milliseconds of the last sort
+  hasPicture = false; // whether some Gaussians have been drawn, in order, since clear()
 
   static async create(canvas) {
     const view = new View();
@@ -67,6 +68,7 @@ export class View {
   // it has not drawn what came in the meantime (rebuildWorkBuffer of PlayCanvas 2.23).
   #endFrame() {
     const isLost = this.#isMarked && this.#hasOrder;
+    this.hasPicture ||= this.#hasOrder && this.#entity !== null;
     this.#isMarked = this.#hasOrder = false;
     this.#frames--;
     if (isLost && this.#entity !== null) this.#mark();
@@ -100,6 +102,7 @@ export class View {
     this.#container?.destroy();
     this.#entity = this.#container = null;
     this.#isSorted = true;
+    this.hasPicture = false;
     this.#change();
   }
 

@@ -1,5 +1,5 @@
-// controls.browser.mjs - the controls of the page in headless Chromium: moving, keys, what
-// a screen reader hears, small windows, a lost drawing context.
+// controls.browser.mjs - the controls of the page in headless Chromium: moving, the pivot, the
+// camera box, keys, what a screen reader hears, small windows, a lost drawing context.
 // SPDX-License-Identifier: BSD-2-Clause
 import assert from "node:assert/strict";
 import { basename, dirname } from "node:path";
@@ -11,6 +11,9 @@ import { psnr } from "./pictures.mjs";
 import { serve } from "./server.mjs";
 
 const WIDTH = 700, HEIGHT = 400; // with room for the panel on the right
+const BOX = `document.getElementById("camera")`;
+const INDEX = "ted4Player.cameras.indexOf(ted4Player.navigation.camera)";
+const DISTANCE = "ted4Player.navigation.distance";
 let browser, server, page;
 
 before(async () => {
@@ -58,6 +61,62 @@ test("the pivot stays under the pointer that moves the camera sideways", async (
   await page.resize(WIDTH, HEIGHT);
   await page.evaluate(`document.body.classList.remove("bare"); 0`);
 });
+
+test("the pivot is measured anew at every camera of the file", async () => {
+  const at = async (i) => {
+    await page.evaluate(`ted4Player.useCamera(${i}); 0`);
+    await page.until("ted4Player.isSettled");
+    return page.evaluate(DISTANCE);
+  };
+  const first = await at(0), second = await at(1);
+  await page.wheel(150, 60, -1200);
+  await page.until(`${DISTANCE} < ${0.5 * second}`);
+  await page.press("0", "Digit0");
+  await page.until("ted4Player.isSettled");
+  assert.equal(await page.evaluate(DISTANCE), first);
+  await page.wheel(150, 60, 1200);
+  await page.until(`${DISTANCE} > ${2 * first}`);
+  assert.equal(await at(1), second);
+  assert.notEqual(first, second);
+});
+
+async function type(text) {
+  await page.evaluate(`${BOX}.focus(); ${BOX}.select(); 0`);
+  for (const key of text) await page.press(key, `Digit${key}`);
+  await page.press("Enter");
+}
+
+test("the camera box says which camera of the file is looked through, and leads to it",
+  async () => {
+    const said = async () => {
+      await frames();
+      return page.evaluate(`[${BOX}.value, ${INDEX} + 1]`);
+    };
+    const leave = () => page.evaluate(`document.getElementById("picture").focus(); 0`);
+    await type("5");
+    assert.deepEqual(await said(), ["5", 5]);
+    await page.wheel(150, 60, -120);
+    await page.until(`${INDEX} < 0`);
+    await page.press("Enter");
+    assert.deepEqual(await said(), ["5", 5]);
+    await leave();
+    await page.press("0", "Digit0");
+    assert.deepEqual(await said(), ["1", 1]);
+    await page.evaluate(`${BOX}.value = 5; ${BOX}.dispatchEvent(new Event("change"));
+      ted4Player.useCamera(0); 0`);
+    assert.deepEqual(await said(), ["1", 1]);
+    await type("7");
+    await leave();
+    await page.drag(150, 60, 170, 70);
+    assert.deepEqual(await said(), ["", 0]);
+    await type("7");
+    assert.deepEqual(await said(), ["7", 7]);
+    for (const bad of ["99", "0", "1.5", ""]) {
+      await page.evaluate(`${BOX}.value = "${bad}"; ${BOX}.dispatchEvent(new Event("change")); 0`);
+      assert.deepEqual(await page.evaluate(`[${BOX}.value, ${INDEX} + 1]`), ["7", 7], bad);
+    }
+    await leave();
+  });
 
 test("with Caps Lock the letters do the same, and a held key switches once", async () => {
   const isBare = () => page.evaluate(`document.body.classList.contains("bare")`);
@@ -108,6 +167,23 @@ test("a drawing context that is lost and restored shows the same picture", async
   await page.until(`ted4Player.statistics.drawn > ${drawn} + 1 && ted4Player.isSettled`, 10);
   assert.ok(await psnr(page, await page.screenshot(), wanted) >= 60);
   await page.evaluate(`document.body.classList.remove("bare"); 0`);
+});
+
+test("what plays before the first picture has one, and all workers", async () => {
+  const early = await browser.page(WIDTH, HEIGHT);
+  await early.open(`${server.origin}/?file=${basename(SCENE)}`);
+  await early.evaluate(`new Promise((resolve) => {
+    const waiting = setInterval(() => {
+      if (ted4Player.file === null) return;
+      clearInterval(waiting);
+      ted4Player.clock.play(performance.now());
+      resolve();
+    });
+  })`);
+  await early.until(`ted4Player.statistics.firstPicture > 0 &&
+    ted4Player.evaluators === Math.min(navigator.hardwareConcurrency, 2)`, 30);
+  assert.equal(await early.evaluate("ted4Player.clock.isPlaying"), true);
+  assert.deepEqual(early.errors, []);
 });
 
 test("nothing fails on the way", () => assert.deepEqual(page.errors, []));

@@ -1,4 +1,5 @@
-// server.mjs - serves files of several folders, the first that has one, on a free port of loopback.
+// server.mjs - serves files of several folders, the first that has one, on a free port of loopback;
+// FILE?wait=1000 a second later than asked for.
 // SPDX-License-Identifier: BSD-2-Clause
 import { readFile } from "node:fs/promises";
 import { createServer } from "node:http";
@@ -22,8 +23,11 @@ async function find(folders, name) {
 // { origin, close() }
 export async function serve(...folders) {
   const server = createServer(async ({ url }, response) => {
-    const name = normalize(decodeURIComponent(new URL(url, "http://localhost").pathname));
+    const { pathname, searchParams } = new URL(url, "http://localhost");
+    const name = normalize(decodeURIComponent(pathname));
     const bytes = await find(folders, name === "/" ? "index.html" : name);
+    const wait = Number(searchParams.get("wait"));
+    if (wait > 0) await new Promise((resolve) => { setTimeout(resolve, wait); });
     const type = TYPES[extname(name)] ?? (name === "/" ? "text/html" : "application/octet-stream");
     response.writeHead(bytes === null ? 404 : 200, { "Content-Type": type });
     response.end(bytes ?? undefined);
