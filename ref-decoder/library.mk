@@ -6,7 +6,9 @@ SONAME  = libted4dec.so.1
 SHARED  = $B/$(SONAME)
 LIBDIR ?= $(PREFIX)/lib
 # Inside the library, functions are called directly: nobody may put another one in their place.
-LIBRARY_FLAGS = -fPIC -fvisibility=protected
+# (With protected visibility, programs that are not position independent could not take their
+# addresses.)
+LIBRARY_FLAGS = -fPIC -fno-semantic-interposition
 $(call OBJECTS,$(DEC_SRC)): LIBRARY = $(LIBRARY_FLAGS)
 
 $B/libted4dec.map: ref-decoder/libted4dec.symbols
@@ -14,13 +16,17 @@ $B/libted4dec.map: ref-decoder/libted4dec.symbols
 	{ echo 'TED4_1 {'; echo 'global:'; sed 's/$$/;/' $<; echo 'local: *;'; echo '};'; } >$@
 $(SHARED): $(call OBJECTS,$(DEC_SRC)) $B/libted4dec.map
 	$(CC) -shared $(LDFLAGS) -Wl,-soname,$(SONAME) -Wl,--version-script=$B/libted4dec.map \
+	    -Wl,-Bsymbolic-functions \
 	    $(filter %.o,$^) -o $@ -lxxhash -lz -lm
 library: $(SHARED) $B/libted4dec.a
 
-# Turns a template's @NAME@ into what they are here. @UP@ leads from LIBDIR to PREFIX.
-FILL = up=$$(echo '$(LIBDIR:$(PREFIX)%=%)' | sed 's|/[^/]*|/..|g'); \
+# Turns a template's @NAME@ into what they are here. Where LIBDIR is below PREFIX, either is named
+# relative to the other, so that both may be moved together.
+BELOW = $(patsubst $(PREFIX)/%,/%,$(filter $(PREFIX)/%,$(LIBDIR)))
+FILL = up=$$(echo '$(BELOW)' | sed 's|/[^/]*|/..|g'); \
     sed 's|@VERSION@|$(VERSION:-dev=)|; s|@PREFIX@|$(PREFIX)|; s|@SONAME@|$(SONAME)|; \
-    s|@LIBDIR@|$${prefix}$(LIBDIR:$(PREFIX)%=%)|; '"s|@UP@|$$up|"
+    s|@LIBDIR@|$(if $(BELOW),$${prefix}$(BELOW),$(LIBDIR))|; \
+    '"s|@ROOT@|$(if $(BELOW),\$${_ted4_libdir}$$up,$(PREFIX))|"
 install-library: library
 	install -d $(DESTDIR)$(LIBDIR)/pkgconfig $(DESTDIR)$(LIBDIR)/cmake/ted4 \
 	    $(DESTDIR)$(PREFIX)/include/ted4/base
@@ -30,9 +36,11 @@ install-library: library
 	install -m 644 ref-decoder/ted4.h $(DESTDIR)$(PREFIX)/include/ted4
 	install -m 644 ref-decoder/base/parallel.h ref-decoder/base/status.h \
 	    ref-decoder/base/status.def $(DESTDIR)$(PREFIX)/include/ted4/base
-	$(FILL) ref-decoder/ted4.pc.in >$(DESTDIR)$(LIBDIR)/pkgconfig/ted4.pc
+	$(FILL) ref-decoder/ted4.pc.in >$B/ted4.pc
+	install -m 644 $B/ted4.pc $(DESTDIR)$(LIBDIR)/pkgconfig
 	for f in ted4-config ted4-config-version; do \
-	    $(FILL) ref-decoder/$$f.cmake.in >$(DESTDIR)$(LIBDIR)/cmake/ted4/$$f.cmake || exit; done
+	    $(FILL) ref-decoder/$$f.cmake.in >$B/$$f.cmake && \
+	    install -m 644 $B/$$f.cmake $(DESTDIR)$(LIBDIR)/cmake/ted4 || exit; done
 
 # The types behind the symbols, as abidw (Debian: abigail-tools) reads them from debug information;
 # tests/tools/test_library.sh compares a build with them. To be made again, on x86-64, by who means

@@ -177,10 +177,12 @@ void ted4_recon_free(ted4_recon *r);
 ted4_status ted4_recon_query(ted4_recon *r, const ted4_query *q, const ted4_parallel *p,
                              ted4_gaussians *g);
 
-/* Returns 1 if this build, on this machine and with the current floating-point settings, computes
- * as class X demands (spec 12.2); otherwise 0 (because of -ffast-math, x87 arithmetic, flush to
- * zero or another rounding mode). Queries still work then, but the last bits of their records may
- * differ. */
+/* Returns 1 if this build, on this machine and with the current floating-point settings of the
+ * calling thread, computes as class X demands (spec 12.2); otherwise 0 (because of -ffast-math, x87
+ * arithmetic, flush to zero or another rounding mode). Queries still work then, but the last bits
+ * of their records may differ. Records are of class X if it returns 1 in every thread that takes
+ * part, while the ted4_recon is made and in all of its queries, as it keeps what it has computed:
+ * threads of p often have other settings than the calling one. */
 int ted4_recon_class_x(void);
 
 /* Computes the hash of the records of a query (spec 15.3), in canonical form. */

@@ -55,7 +55,9 @@ static inline unsigned bits_of(mask m)
 
 static inline vi choose(mask m, vi yes, vi no)
 {
-    return (vi)_mm256_blendv_epi8((__m256i)no, (__m256i)yes, (__m256i)m);
+    return (vi)_mm256_castps_si256(_mm256_blendv_ps(_mm256_castsi256_ps((__m256i)no),
+                                                    _mm256_castsi256_ps((__m256i)yes),
+                                                    _mm256_castsi256_ps((__m256i)m)));
 }
 
 /* Table entries are loaded one by one: gather instructions take several times as long on processors

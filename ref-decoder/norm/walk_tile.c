@@ -136,13 +136,14 @@ static void carve(tile *t, void *work)
     t->some_sigma = next_array(&at, n, 1);
 }
 
-static uint16_t probability(ted4_coder *c, const char *name, int64_t index, uint16_t value)
+static void walk_probability(ted4_coder *c, const char *name, int64_t index, uint16_t *prob)
 {
     const size_t at = c->pos;
+    const uint16_t value = (uint16_t)ted4_code(c, name, index, 2, *prob);
 
-    value = (uint16_t)ted4_code(c, name, index, 2, value);
     ted4_require(c, value > 0, TED4_E_ENT_PROB, at);
-    return value;
+    if (c->reads)
+        *prob = value;
 }
 
 /* spec 9.1: codes everything but the substreams. */
@@ -155,9 +156,9 @@ static void walk_head(tile *t, unsigned number)
 
     ted4_require(c, ted4_code(c, "tile_index", 0, 4, number) == number, TED4_E_ENT_TILE_INDEX, at);
     if (t->s->head.temporal_mask)
-        prob[0] = probability(c, "dynamic_prob", 0, prob[0]);
+        walk_probability(c, "dynamic_prob", 0, &prob[0]);
     for (int i = 0; t->s->head.offset_mask && i < 6; i++)
-        prob[1 + i] = probability(c, "offset_prob", i, prob[1 + i]);
+        walk_probability(c, "offset_prob", i, &prob[1 + i]);
     at = c->pos;
     c->ops->sizes(c, size, t->s->shape.n_substreams);
     for (unsigned i = 0; c->trace != NULL && i < t->s->shape.n_substreams; i++)

@@ -180,7 +180,8 @@ ted4_status ted4_collect(ted4_findings *f, const ted4_options *o)
     c.copy = ted4_arena_alloc(&c.d.s->arena, f->size, 1);
     if (c.copy != NULL) {
         code = TED4_OK;
-        memcpy(c.copy, f->data, f->size);
+        if (f->size > 0)
+            memcpy(c.copy, f->data, f->size);
         c.d.file.data = c.copy;
         if (judge_file_header(&c))
             judge_payloads(&c, judge_frames(&c));

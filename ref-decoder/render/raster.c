@@ -69,6 +69,10 @@ int ted4_raster_forward(ted4_raster *r, const ted4_splats *s, const ted4_view *v
 {
     r->tiles_x = ((uint32_t)v->width + TED4_TILE - 1) / TED4_TILE;
     r->tiles_y = ((uint32_t)v->height + TED4_TILE - 1) / TED4_TILE;
+    /* Places of tiles have 16 bits; a chunk counts its instances in 32, and may fill all tiles. */
+    if (r->tiles_x > UINT16_MAX || r->tiles_y > UINT16_MAX ||
+        (uint64_t)r->tiles_x * r->tiles_y * TED4_CHUNK > UINT32_MAX)
+        return -1;
     if (ted4_raster_project(r, s, v, p) != 0 || ted4_raster_bin(r, s, p) != 0)
         return -1;
     return ted4_raster_blend(r, v, p, keep_state, image);

@@ -46,7 +46,8 @@ void ted4_raster_free(ted4_raster *r); /* r may be NULL */
 
 /* Renders into image, planar [3][height][width], not clamped. The result has the same bits for any
  * number of threads. Ties in depth are broken by index. keep_state: nonzero keeps the state that
- * the adjoint needs. Returns 0, or -1 with image undefined if out of memory. */
+ * the adjoint needs. Returns 0, or -1 with image undefined if out of memory, or if the picture is
+ * wider or higher than 1,048,560 pixels or has more than about 1.07e9 of them. */
 int ted4_raster_forward(ted4_raster *r, const ted4_splats *s, const ted4_view *v,
                         const ted4_parallel *p, int keep_state, float *image);
 

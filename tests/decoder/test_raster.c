@@ -66,6 +66,25 @@ static void test_random(void **state)
         }
 }
 
+/* Pictures whose tiles or instances could not be counted are refused before anything is drawn. */
+static void test_too_large(void **state)
+{
+    static const int size[][2] = { { 1048561, 1 }, { 1, 1048561 }, { 32768, 32784 } };
+    ted4_raster *r = ted4_raster_new();
+    const ted4_view small = scene_view(16, 16);
+    scene s = scene_random(4, &small, 1, 1);
+    const ted4_splats g = scene_splats(&s);
+
+    (void)state;
+    for (size_t i = 0; i < sizeof size / sizeof *size; i++) {
+        const ted4_view v = scene_view(size[i][0], size[i][1]);
+
+        assert_int_equal(ted4_raster_forward(r, &g, &v, NULL, 0, NULL), -1);
+    }
+    ted4_raster_free(r);
+    scene_free(&s);
+}
+
 /* Pixels coarser and finer than those of training (annex I.4). */
 static void test_other_pixels(void **state)
 {
@@ -305,6 +324,7 @@ int main(void)
         cmocka_unit_test(test_awkward),    cmocka_unit_test(test_needle),
         cmocka_unit_test(test_not_finite), cmocka_unit_test(test_ties),
         cmocka_unit_test(test_threads),    cmocka_unit_test(test_reuse),
+        cmocka_unit_test(test_too_large),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

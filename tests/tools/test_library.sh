@@ -110,6 +110,28 @@ else
     skip pkg_config "there is no pkg-config"
 fi
 
+# A program that is not position independent may keep the addresses of functions.
+cat >"$out/address.c" <<'C'
+#include <stdio.h>
+#include <ted4/ted4.h>
+static void (*const end)(ted4_scene *) = ted4_scene_free;
+int main(void)
+{
+    end(NULL);
+    return puts("fine") < 0;
+}
+C
+if ${CC:-cc} -fno-pie -no-pie -I"$usr/include" "$out/address.c" -L"$usr/lib" -lted4dec \
+    -o "$out/address" 2>"$out/err"; then expect address 0 fine "$out/address"
+else fail address "$(cat "$out/err")"; fi
+
+# Libraries elsewhere than below PREFIX, by somebody whose files others may not read.
+(umask 077; make install-library B="$TED4_BUILD" PREFIX="$out/far/opt" LIBDIR="$out/far/lib") \
+    >"$out/said" 2>&1
+check far "$out/far/lib/pkgconfig/ted4.pc" "libdir=$out/far/lib" "prefix=$out/far/opt"
+if find "$out/far" -type f ! -perm -444 | grep -q .; then fail readable "$(ls -lR "$out/far")"
+else ok readable; fi
+
 if has cmake; then
     mkdir "$out/project"
     cp doc/examples/memory.c doc/examples/read_file.h "$out/project"
@@ -135,6 +157,19 @@ CMAKE
         -Dted4_DIR="$out/multi/usr/lib/triplet/cmake/ted4" &&
         cmake --build "$out/made2" >>"$out/said" 2>&1; then ok cmake_triplet
     else fail cmake_triplet "$(cat "$out/said")"; fi
+    # cmake_finds NAME FOLDER: configures and builds the project with the package there.
+    cmake_finds() {
+        if cmake -S "$out/project" -B "$out/made_$1" -Dted4_DIR="$2" >"$out/said" 2>&1 &&
+            cmake --build "$out/made_$1" >>"$out/said" 2>&1; then ok "cmake_$1"
+        else fail "cmake_$1" "$(cat "$out/said")"; fi
+    }
+    cmake_finds far "$out/far/lib/cmake/ted4"
+    # Where /lib is a link to /usr/lib.
+    ln -s usr/lib "$out/multi/lib"
+    cmake_finds merged "$out/multi/lib/triplet/cmake/ted4"
+    sed -i 's/ted4 0.2 REQ/ted4 0.1...<0.2 REQ/' "$out/project/CMakeLists.txt"
+    if cmake -S "$out/project" -B "$out/made3" -DCMAKE_PREFIX_PATH="$usr" >"$out/said" 2>&1
+    then fail cmake_range "0.2 is taken for less than 0.2"; else ok cmake_range; fi
 else
     skip cmake "there is no cmake"
 fi
