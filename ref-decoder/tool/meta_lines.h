@@ -9,8 +9,8 @@
 #include <stdint.h>
 
 /* Prints the lines whose key is word, or begins with word and a dot, and returns their number. The
- * file must be one that a decoder accepted. Bytes that are not printable ASCII are replaced by
- * '?'. */
+ * file must be one that a decoder accepted. Bytes that are not UTF-8, or belong to characters that
+ * are not seen, are replaced by '?'. */
 size_t ted4_meta_lines_print(const uint8_t *data, size_t size, const char *word);
 /* Returns the same lines as a new array of strings. */
 json_t *ted4_meta_lines_json(const uint8_t *data, size_t size, const char *word);

@@ -67,6 +67,24 @@ static void test_steering(void **state)
     expect(want, 1);
 }
 
+/* Text of any language is shown as it is; bytes that are no UTF-8, or whose character is not seen
+ * or turns the text around, are not. */
+static void test_languages(void **state)
+{
+    static const char text[] = "capacity=\xc3\xa9 \xd0\xb6 \xe6\x97\xa5 \xf0\x9f\x8c\x8d\n"
+                               "capacity=\xc1\xbf \xe0\x9f\xbf \xed\xa0\x80 \xf4\x90\x80\x80\n"
+                               "capacity=\xe2\x80\xae \xe2\x80\xa8 \xc2\xad \xef\xbb\xbf\n"
+                               "capacity=\xe9t\xc3 \xf8\x88\x80\x80\x80 \xbf\xe6\x97\n";
+    static const char *const want[] = { "capacity=\xc3\xa9 \xd0\xb6 \xe6\x97\xa5 \xf0\x9f\x8c\x8d",
+                                        "capacity=?? ??? ??? ????", "capacity=??? ??? ?? ???",
+                                        "capacity=?t? ????? ???" };
+
+    (void)state;
+    begin();
+    add_chunk("META", text, strlen(text));
+    expect(want, 4);
+}
+
 static void test_none(void **state)
 {
     static char long_line[2000];
@@ -91,6 +109,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = { cmocka_unit_test(test_lines),
                                         cmocka_unit_test(test_steering),
+                                        cmocka_unit_test(test_languages),
                                         cmocka_unit_test(test_none) };
 
     return cmocka_run_group_tests(tests, NULL, NULL);
