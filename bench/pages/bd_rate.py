@@ -77,7 +77,7 @@ def rate_bar(runs, bars):
         if None not in rates:
             known[scene] = rates
     missed = [scene for scene, rates in known.items() if sum(rates) > LEAST_GAIN * len(rates)]
-    bars.add(1, "BD-rate against the encoder before, four rates",
+    bars.add(1, "BD-rate against profile Main as before, by the same encoder, four rates",
              f"{LEAST_GAIN} % at least on each scene",
              ", ".join(f"{scene} {rate_words(rates)}" for scene, rates in known.items()),
              verdict(missed, len(known), len(runs.scenes)), COMMAND)
