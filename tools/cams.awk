@@ -1,9 +1,9 @@
 # cams.awk - from COLMAP's cameras.txt and images.txt (SIMPLE_RADIAL lenses) to cams.json, whose
 # fields doc/layouts.md describes. First file: name of the picture, tab, clip. The centre of the
-# first pixel is at 0.5, 0.5 for COLMAP, and at 0, 0 in cams.json.
+# first pixel is at 0.5, 0.5 for COLMAP, and at 0, 0 in cams.json. 17 digits give back every double.
 # SPDX-License-Identifier: BSD-2-Clause
 function text(s) { gsub(/\\/, "\\\\", s); gsub(/"/, "\\\"", s); return "\"" s "\"" }
-function row(a, b, c, d) { return sprintf("[%.9f, %.9f, %.9f, %.9f]", a, b, c, d) }
+function row(a, b, c, d) { return sprintf("[%.17g, %.17g, %.17g, %.17g]", a, b, c, d) }
 FNR == 1 { file++ }
 file == 1 { split($0, p, "\t"); picture[++n] = p[1]; clip[n] = p[2]; next }
 /^#/ { next }
@@ -17,8 +17,9 @@ file == 2 {
 {
     w = $2; x = $3; y = $4; z = $5; c = $9; name = $0
     for (i = 0; i < 9; i++) sub(/^[^ ]+ /, "", name)
-    lens = sprintf("\"K\": [[%.4f, 0, %.4f], [0, %.4f, %.4f], [0, 0, 1]]", f[c], cx[c], f[c], cy[c])
-    lens = lens sprintf(", \"dist\": [%.9f, 0, 0, 0]", k[c])
+    lens = sprintf("\"K\": [[%.17g, 0, %.17g], [0, %.17g, %.17g], [0, 0, 1]]", f[c], cx[c], f[c], \
+        cy[c])
+    lens = lens sprintf(", \"dist\": [%.17g, 0, 0, 0]", k[c])
     a = row(1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y), $6)
     b = row(2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x), $7)
     d = row(2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y), $8)

@@ -58,7 +58,7 @@ if [ $one = 0 ]; then
         --output_type PLY
     for v; do echo "$(basename "${v%.*}").png	$(basename "$v")"; done >"$work/clips"
     rate=$(ffprobe -v error -select_streams v:0 -show_entries stream=avg_frame_rate -of csv=p=0 \
-        "$1" | awk -F/ 'NR == 1 { print $1 / ($2 ? $2 : 1) }')
+        "$1" | awk -F/ 'NR == 1 { printf "%.17g", $1 / ($2 ? $2 : 1) }')
     awk -v rate="$rate" -f "$(dirname "$0")/cams.awk" "$work/clips" "$work/sparse/cameras.txt" \
         "$work/sparse/images.txt" >"$out/cams.json"
 fi

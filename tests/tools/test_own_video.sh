@@ -21,6 +21,14 @@ echo here >"$out/full/file"
 refuse usage 3 "usage: own-video.sh FOLDER VIDEO" sh tools/own-video.sh "$out/s"
 refuse no_tools 3 "there is no program ffmpeg (Debian:" env PATH="$out/none" "$sh" \
     tools/own-video.sh "$out/s" "$out/text.mp4"
+# Every digit of COLMAP's numbers is kept; this pose has no rotation.
+f=330.11249999999995 k=-0.012345678901234567 x=0.12345678901234568
+echo "a.png	a.mp4" >"$out/list"
+echo "1 SIMPLE_RADIAL 320 240 $f 160 120 $k" >"$out/cameras.txt"
+printf '1 1 0 0 0 %s 2 3 1 a.png\n\n' "$x" >"$out/images.txt"
+awk -v rate=30 -f tools/cams.awk "$out/list" "$out/cameras.txt" "$out/images.txt" >"$out/exact"
+check digits "$out/exact" "[[$f, 0, 159.5], [0, $f, 119.5], [0, 0, 1]]" "\"dist\": [$k, 0, 0, 0]" \
+    "[1, 0, 0, $x]"
 for p in ffmpeg ffprobe colmap; do command -v $p >/dev/null ||
     { skip own_video "there is no $p"; exit $bad; }; done
 refuse no_file 3 "$out/absent.mp4: no such file" sh tools/own-video.sh "$out/s" "$out/absent.mp4"
@@ -74,7 +82,7 @@ chmod +x "$out/bin/ffprobe"
 expect clips_made 0 "5 of 5 pictures have poses" env PATH="$out/bin:$PATH" sh tools/own-video.sh \
     "$out/rig" "$out/clips"/*.mp4
 looks rig "25 train, 5 test" "12.5 frames/s"
-check in_order "$out/rig/cams.json" '"name": "cam 04", "video": "cam 04.mp4"' ', 0, 159.5000], [0, '
+check in_order "$out/rig/cams.json" '"name": "cam 04", "video": "cam 04.mp4"' ', 0, 159.5], [0, '
 # COLMAP's own files, and cams.json made from them, give the same cameras through their loaders.
 "$TED4_BUILD/ted4enc" --check "$out/rig/poses" >"$out/poses.says" 2>/dev/null
 same() { grep -E "^$1 " "$out/rig.says" >"$out/a"; grep -E "^$1 " "$out/poses.says" |
