@@ -1,6 +1,6 @@
 """bench/capacity.md: how much model is chosen, against fixed settings: bars 4 to 6 of the lab.
 SPDX-License-Identifier: BSD-2-Clause"""
-from .bars import DELIVERED, Bars, First
+from .bars import Bars, First
 from .capacity_cost import Costs, temporal
 from .earlier import earlier
 from .plot import Plot
@@ -95,7 +95,7 @@ def time_bar(runs, bars):
     bars.add(4, "training time of auto against the same options fixed, CPU", "at most 25 % more",
              f"most: {worst} {signed(100 * more[worst], 0, ' %')}" if more else "",
              False if more and more[worst] > MOST_TIME
-             else DELIVERED if pairs and len(more) == len(pairs) else None,
+             else True if pairs and len(more) == len(pairs) else None,
              command("'*-auto-1' '*-whole-1'"))
 
 

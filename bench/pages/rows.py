@@ -46,6 +46,11 @@ class Measured(Run):
         """Bytes of the attributes' substreams."""
         return sum(self.count("b_" + name) for name in "feature scaling offset phi tau".split())
 
+    def position_bits(self):
+        """Bits of the file for the position of an anchor; None when they are not known."""
+        anchors = self.count("anchors")
+        return 8 * self.count("b_positions") / anchors if anchors else None
+
     def picture_ms(self):
         """Milliseconds to decode the file on one thread and to draw one picture with the threads
         of the run; None when one of them is not known."""

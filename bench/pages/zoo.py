@@ -110,7 +110,7 @@ def write(runs, _charts, _results, _pages):
         which is friendly, in a way in which others write scenes; [zoo.txt](zoo.txt) is the table.
         The command makes the scene; then `ted4enc SCENE -o FILE.ted4 --preset draft --seed 1`
         trains it, with the options that stand behind the command. The preset is draft, because the
-        default has three and a half times as many steps.""")
+        default takes several times as long.""")
     bars = Bars()
     case_bars(zoo, bars)
     back_bar(bars, zoo.lab, "the same on the scenes of the stability lab",

@@ -79,10 +79,13 @@ chair-whole-2,k,o,30,100000,,,,,
 chair-static-2,k,o,30,$2,,,,,
 END
 }
+# Runs that fit the pattern in $older are of older sources, and of profile Main: 6 bytes a position.
+older=-
 make_report() {
-    { echo tag,key,options,psnr,bytes,span_short,span_between,span_long,short_changed,short_same
-      rows "$@"; } >"$out/sweep.csv"
-    rows "$@" | sed 's/\([^,]*\),.*/done \1/' >"$out/states"
+    { echo tag,key,options,psnr,bytes,span_short,span_between,span_long,short_changed,short_same,\
+anchors,b_positions
+      rows "$@" | sed "/^$older/s/$/,100,600/; t; s/$/,100,150/"; } >"$out/sweep.csv"
+    rows "$@" | sed "/^$older/s/\([^,]*\),.*/older \1/; t; s/\([^,]*\),.*/done \1/" >"$out/states"
     TED4_RESULTS=$out TED4_PAGES=$out TED4_TABLE=$out/table.txt \
         python3 -m bench.pages report "$out/states"
 }
@@ -115,4 +118,12 @@ make_report 30.3 101000 || fail run "status $?"
 check not_together "$page" '| -0.08, -0.10, -0.20 | -0.13 ± 0.04 | 7.6 % | worse | no saying |' \
     'cannot be said (met when judged alone, not among the 2 comparisons over seeds). Rests on 1 scene, 2 held-out cameras (1 picture), 3 seeds | cannot be said: on kitchen; one scene alone; as first defined: met |'
 check not_delivered "$page" 'chair: -0.99 % | met |'
+grep -q 'profile Main' "$out/report.md" && fail one_profile "$(grep Main "$out/report.md")" ||
+    ok one_profile
+
+older=kitchen-
+make_report 30.38 100000 || fail run "status $?"
+check two_profiles "$out/report.md" 'are of profile Main, and were trained with the presets of'
+check mixed_lives "$page" '/ 60.0 %†; the rows are of two encoders | cannot be said; as first' \
+    'slow (kitchen): 30.0 / 10.0 / 60.0 %† | cannot be said |'
 exit $bad

@@ -3,6 +3,7 @@ SPDX-License-Identifier: BSD-2-Clause"""
 import os
 
 from ..bars import First
+from ..compare import is_mixed
 from ..rows import mark
 from ..stacks import Stacks
 from ..words import percent
@@ -98,6 +99,8 @@ def bar(report):
                 f"{percent(fast.number('short_same'), 1)} elsewhere; "
                 f"slow (dog): {shares_text(slow)}"
                 + mark([slow, fast]))
+        if is_mixed([fast, slow]):
+            ok, text = "?", text + "; the rows are of two encoders"
     report.bars.add(6, "activation spans up to 0.2 / between / 0.8 and more, and heat maps",
                     "short spans where things come and go (light by short lives at least ten times "
                     "that elsewhere); more of them in the fast scene", text, ok,
@@ -117,5 +120,6 @@ def first_bar(report):
                  "slow one, then kitchen",
                  f"fast (walk): {shares_text(fast)}; slow (kitchen): {shares_text(slow)}"
                  + mark([fast, slow]),
+                 "?" if is_mixed([fast, slow]) else
                  fast.count("span_short") > slow.count("span_short")
                  and fast.count("span_long") < slow.count("span_long"))

@@ -7,6 +7,7 @@ from . import (bytes, estimate, findings, kept, lives, pictures, points, precisi
 from .context import Report
 
 SHOWN = "kitchen-whole-2"   # the run of the headline and of the picture
+MAIN_BITS = 48              # of the position of an anchor in profile Main (spec 8)
 
 
 def write(runs, charts, results, pages):
@@ -88,7 +89,17 @@ def headline(report, page):
     page.prose("""`make report` writes this page from the rows of [sweep.csv](sweep.csv), which
         `make sweep` makes; [report-tables.md](report-tables.md) holds all tables and the commands
         behind them.""")
-    page.prose(report.runs.summary() + ".")
+    page.prose(report.runs.summary() + "." + older_profile(report.runs.all))
+
+
+def older_profile(runs):
+    """Sentences where the older rows are of profile Main, and no other row is."""
+    rows = [run for run in runs if run.has()]
+    if not mark(rows) or any((run.position_bits() == MAIN_BITS) != run.is_old() for run in rows):
+        return ""
+    return """ The files of rows marked † are of profile Main, and were trained with the presets of
+        earlier sources; the others are of profile Compact. No number is a difference between the
+        two kinds, and the commands behind marked rows make other files today."""
 
 
 def speed_section(report, page):
