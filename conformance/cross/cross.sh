@@ -60,11 +60,14 @@ what_from() {
         ref-decoder/recon/*.c ref-decoder/kernel/*.c)
     program="conformance/cross/cross_decoder.c conformance/tool/answer.c conformance/tool/text.c
         ref-decoder/tool/contract.c ref-decoder/tool/tier_hash.c ref-decoder/tool/sha256.c
-        ref-decoder/tool/cli.c ref-decoder/tool/read_file.c"
+        ref-decoder/tool/cli.c ref-decoder/tool/json_file.c ref-decoder/tool/json_string.c
+        ref-decoder/tool/read_file.c"
     judge="conformance/tool/judge.c conformance/tool/judge.h conformance/tool/process.h
         conformance/tool/suite.h"
     headers=$(for f in answer text; do echo "conformance/tool/$f.h"; done
-        for f in contract tier_hash sha256 cli; do echo "ref-decoder/tool/$f.h"; done)
+        for f in contract tier_hash sha256 cli json_file json_string; do
+            echo "ref-decoder/tool/$f.h"
+        done)
     # Of zlib what works on bytes in memory.
     zlib="adler32 compress crc32 deflate inffast inflate inftrees trees zutil"
     # Wine keeps to itself, says nothing, and asks for nothing.
@@ -199,7 +202,8 @@ compile() {
         esac
         objects "$here/ours" "$ours $isa" "$source" || return 1
     done
-    $compiler "$here"/ours/*.o "$others"/*.o "$others"/*/*.o $link -lm -o "$here/program"
+    $compiler "$here"/ours/*.o "$others"/*.o "$others"/*/*.o $link -lm -o "$here/program" ||
+        return 1
     [ ! -e "$here/program.exe" ] || mv "$here/program.exe" "$here/program"
 }
 

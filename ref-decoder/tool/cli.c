@@ -12,7 +12,9 @@
 
 void ted4_cli_begin(void)
 {
+#ifdef SIGXFSZ /* Windows has no limit of file sizes. */
     signal(SIGXFSZ, SIG_IGN);
+#endif
 }
 
 int ted4_cli_end(const char *program, int code)
