@@ -1,7 +1,7 @@
 #!/bin/sh
 # ranks.sh - ted4enc-mpi: the same bytes, log and checkpoint as ted4enc for any number of ranks and
-# threads; a rank that is killed, stopped, or cannot read a picture. Prints lines as a cmocka
-# program does; run by `make test-mpi` from the project's root.
+# threads, also of a still scene; a rank that is killed, stopped, or cannot read a picture. Prints
+# lines as a cmocka program does; run by `make test-mpi` from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 LC_ALL=C; export LC_ALL
@@ -128,6 +128,23 @@ head -c 300 "$picture" >"$out/half"
 cp "$out/half" "$picture"
 apart unreadable_picture "ted4enc: rank 1 of 2: $picture" "$out/broken"
 apart another_training "is not at the same point of the same training" "$out/scene" --seed 9
+
+# Of a scene in which nothing moves, every training starts again without time, and the ranks of one
+# stay together. Motion that does not learn is no better than none.
+"$TED4_BUILD/ted4scene" things0 -o "$out/still" -f --size 48x32 --cameras 5 --test-cameras 1 \
+    --frames 4 --hold 0 >/dev/null 2>&1
+rest="--set stage1=1000 --set probe=0.2 --set lr_motion=0 --set lr_phi=0 --set lr_tau=0"
+rest="$rest --set max_anchors=2000"
+"$TED4_BUILD/ted4enc" "$out/still" $how $rest -o "$out/still.ted4" -j 2 -q --json >"$out/said" ||
+    fail still_scene "one process fails"
+if ! grep -q '"probe_without":0.0[0-9]*[1-9]' "$out/said"; then
+    fail still_scene "no static test: $(cat "$out/said")"
+elif $launch -n 2 "$TED4_BUILD/ted4enc-mpi" "$out/still" $how $rest -o "$out/ranks.ted4" -j 1 -q \
+    >"$out/said" 2>&1 && cmp -s "$out/still.ted4" "$out/ranks.ted4"; then
+    ok still_scene
+else
+    fail still_scene "not the same file: $(cat "$out/said")"
+fi
 
 # What all ranks find wrong is said once.
 $launch -n 3 "$TED4_BUILD/ted4enc-mpi" "$out/broken" $how -o "$out/a.ted4" -q >"$out/said" 2>&1

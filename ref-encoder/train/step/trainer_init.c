@@ -128,6 +128,7 @@ int ted4_trainer_restart(ted4_trainer *t, const ted4_header *h)
     const ted4_train_options opt = t->opt;
     ted4_dataset *data = t->data;
     const ted4_parallel *parallel = t->parallel;
+    ted4_exchange *exchange = t->exchange;
     const double seconds = t->seconds;
     const ted4_onlooker onlooker = t->onlooker;
 
@@ -135,6 +136,7 @@ int ted4_trainer_restart(ted4_trainer *t, const ted4_header *h)
     t->opt = opt;
     t->data = data;
     t->parallel = parallel;
+    t->exchange = exchange;
     t->seconds = seconds;
     t->onlooker = onlooker;
     t->search.probed = 1;
