@@ -181,6 +181,7 @@ static const ted4_command COMMAND = {
 typedef struct {
     const char *preset, *lambda, *iterations, *capacity, *profile, *set[MAX_SETS];
     int n_sets;
+    const char *of_scene; /* name of the first option given that --transcode does not know */
 } pending;
 
 static int complain(const char *text)
@@ -271,12 +272,31 @@ static int *flag(ted4_request *r, int option)
     return flags[option];
 }
 
+/* Returns whether an option means something without a scene and a training. */
+static int goes_with_transcode(int option)
+{
+    switch (option) {
+    case OPT_OUTPUT:
+    case OPT_THREADS:
+    case OPT_PROFILE:
+    case OPT_TRANSCODE:
+    case OPT_JSON:
+    case OPT_CONTRACT:
+    case OPT_FORCE:
+    case OPT_QUIET:
+    case OPT_VERBOSE: return 1;
+    default: return 0;
+    }
+}
+
 static int take(ted4_request *r, pending *p, int option, const char *value)
 {
     int *const on = flag(r, option);
 
     if (on != NULL)
         *on = 1;
+    if (p->of_scene == NULL && !goes_with_transcode(option))
+        p->of_scene = OPTIONS[option].name;
     switch (option) {
     case OPT_OUTPUT: r->out = value; break;
     case OPT_PRESET: p->preset = value; break;
@@ -405,6 +425,23 @@ static int apply(ted4_request *r, const pending *p)
     return status;
 }
 
+/* Checks that what was given goes together. */
+static int check(const ted4_request *r, const pending *p)
+{
+    char text[100];
+
+    if (r->transcode != NULL && p->of_scene != NULL) {
+        snprintf(text, sizeof text, "--%s does not go with --transcode", p->of_scene);
+        return complain(text);
+    }
+    if (r->out == NULL && !r->check)
+        return complain("-o FILE.ted4 expected");
+    if (r->out != NULL && !ted4_has_suffix(r->out, ".ted4"))
+        return bad_output(r->out);
+    return r->resume && r->checkpoint == NULL ? complain("--resume needs --checkpoint FILE")
+                                              : TED4_REQUEST_GO;
+}
+
 int ted4_request_parse(ted4_request *r, int argc, char **argv)
 {
     static char name[] = "ted4enc"; /* the beginning of getopt's messages, whatever argv[0] was */
@@ -429,11 +466,8 @@ int ted4_request_parse(ted4_request *r, int argc, char **argv)
         return complain(r->transcode == NULL ? "one scene folder expected; --help lists the options"
                                              : "no scene folder expected beside --transcode");
     r->scene = r->transcode == NULL ? argv[optind] : NULL;
-    if (r->out == NULL && !r->check)
-        return complain("-o FILE.ted4 expected");
-    if (r->out != NULL && !ted4_has_suffix(r->out, ".ted4"))
-        return bad_output(r->out);
-    if (r->resume && r->checkpoint == NULL)
-        return complain("--resume needs --checkpoint FILE");
-    return apply(r, &p);
+
+    const int status = check(r, &p);
+
+    return status == TED4_REQUEST_GO ? apply(r, &p) : status;
 }

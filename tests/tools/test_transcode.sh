@@ -1,8 +1,9 @@
 #!/bin/sh
 # test_transcode.sh - ted4enc --transcode: a file goes from profile Main to Compact and comes back
 # byte for byte, with the same tiers on the way; a grid whose order is not that of profile Main is
-# sorted, with a warning; chunks that may be untrue are dropped; what is wrong is said. Prints lines
-# as a cmocka program does; run by `make test` from the project's root.
+# sorted, with a warning; chunks that may be untrue are dropped; what is wrong is said, and options
+# of a training are refused. Prints lines as a cmocka program does; run by `make test` from the
+# project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 . tests/support/speak.sh
@@ -64,4 +65,27 @@ expect missing_json 3 '"verdict":"io"' "$enc" --transcode "$out/none" -o "$out/n
 expect scene_too 3 'no scene folder' "$enc" scene --transcode "$grid" -f -o "$out/a.ted4"
 expect which_profile 3 'expected main or compact' "$enc" --profile small --transcode "$grid" \
     -f -o "$out/a.ted4"
+
+# Options of training do not go with it: none is silently without effect, and nothing is written.
+cp "$grid" "$out/kept.ted4"
+alone() {
+    name=$1; shift
+    expect "alone_$name" 3 "ted4enc: --$name does not go with --transcode" \
+        "$enc" --transcode "$ancillary" -o "$out/kept.ted4" -f "$@"
+}
+alone check --check
+alone title --title x
+alone cameras --cameras
+alone log --log "$out/log"
+alone resume --resume --checkpoint "$out/point" --stage1 "$out/point"
+alone preset --preset draft
+alone lambda --lambda 0.01
+alone set --set offsets=4
+alone seed --seed 2
+expect alone_without_output 3 'does not go with --transcode' \
+    "$enc" --transcode "$ancillary" --check
+cmp -s "$grid" "$out/kept.ted4" && [ ! -e "$out/log" ] && ok alone_writes_nothing ||
+    fail alone_writes_nothing "a file"
+expect goes_with 0 '"bytes":' "$enc" --transcode "$grid" --profile main -o "$out/a.ted4" -f -j 1 \
+    -q -v --json
 exit $bad
