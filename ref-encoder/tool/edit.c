@@ -175,6 +175,14 @@ static size_t key_length(const char *line, size_t n)
     return equals != NULL ? (size_t)(equals - line) : n;
 }
 
+/* Has the line no value, be it for lack of an equals sign? */
+static int is_empty(const char *line)
+{
+    const char *equals = strchr(line, '=');
+
+    return equals == NULL || equals[1] == '\0';
+}
+
 static int has_key(const char *const *line, size_t n, const char *key, size_t length)
 {
     for (size_t i = 0; i < n; i++)
@@ -216,8 +224,7 @@ int ted4_edit_lines(ted4_edit *e, const char *const *line, size_t n)
         if (!e->chunk[i].dropped && strcmp(e->chunk[i].view.type, "META") == 0)
             copy_lines(&b, &e->chunk[i].view, line, n);
     for (size_t i = 0; i < n; i++)
-        if (line[i][key_length(line[i], strlen(line[i]))] != '\0' &&
-            line[i][strlen(line[i]) - 1] != '=')
+        if (!is_empty(line[i]))
             add_line(&b, line[i], strlen(line[i]));
     if (b.failed) {
         ted4_buffer_free(&b);
