@@ -189,6 +189,14 @@ static uint64_t add(uint64_t digest, const void *p, size_t size)
     return size > 0 ? XXH3_64bits_withSeed(p, size, digest) : digest;
 }
 
+/* A pinhole adds nothing: all there is of it is in the camera. */
+static uint64_t add_lens(uint64_t digest, const ted4_lens *l)
+{
+    const double bends[6] = { l->k1, l->k2, l->k3, l->p1, l->p2, l->skew };
+
+    return ted4_lens_is_pinhole(l) ? digest : add(digest, bends, sizeof bends);
+}
+
 uint64_t ted4_dataset_digest(const ted4_dataset *d)
 {
     uint64_t x = d->content;
@@ -203,6 +211,7 @@ uint64_t ted4_dataset_digest(const ted4_dataset *d)
         x = add(x, lens, sizeof lens);
         x = add(x, c->R, sizeof c->R);
         x = add(x, c->t, sizeof c->t);
+        x = add_lens(x, &d->sources[i].lens);
         if (d->sources[i].premultiplied)
             x = add(x, &d->sources[i].premultiplied, sizeof d->sources[i].premultiplied);
     }

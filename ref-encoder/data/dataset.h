@@ -103,8 +103,8 @@ enum { TED4_DATASET_AHEAD = 16 };
  * decoded. */
 int ted4_dataset_verify(ted4_dataset *d, const ted4_parallel *p, ted4_message *m);
 
-/* Returns a digest of everything in the scene that training depends on: cameras, times, split,
- * points, background and d->content. It does not depend on where the files are stored. */
+/* Returns a digest of everything in the scene that training depends on: cameras and lenses, times,
+ * split, points, background and d->content. It does not depend on where the files are stored. */
 uint64_t ted4_dataset_digest(const ted4_dataset *d);
 
 /* Prints a summary of the dataset: layout, pictures, cameras, frames, sizes, focal lengths, camera

@@ -369,13 +369,50 @@ static void test_digest(void **state)
     tiny_free(&b);
 }
 
+/* Pixels depend on all coefficients of the lens, which undistortion removes from the camera. */
+static void test_digest_of_lens(void **state)
+{
+    static const char *const lenses[] = {
+        "\"fl_x\": 9,",
+        "\"fl_x\": 9, \"k1\": 0.01,",
+        "\"fl_x\": 9, \"k2\": 0.01,",
+        "\"fl_x\": 9, \"k3\": 0.01,",
+        "\"fl_x\": 9, \"p1\": 0.01,",
+        "\"fl_x\": 9, \"p2\": 0.01,",
+        "\"fl_x\": 9, \"p2\": 0.02,",
+        "\"K\": [[9, 1, 8], [0, 9, 6], [0, 0, 1]],",
+        "\"K\": [[9, 2, 8], [0, 9, 6], [0, 0, 1]],",
+    };
+    enum { LENSES = sizeof lenses / sizeof lenses[0] };
+    tiny_folder f = tiny_new();
+    uint64_t seen[LENSES];
+
+    (void)state;
+    tiny_picture(&f, "p.png", TINY_W, TINY_H, 0);
+    for (int i = 0; i < LENSES; i++) {
+        tiny_string s = { "", 0 };
+
+        tiny_add(&s,
+                 "{%s \"frames\": [{\"file_path\": \"p.png\", \"transform_matrix\": " TINY_POSE
+                 "}]}",
+                 lenses[i]);
+        tiny_text(&f, "transforms.json", s.text);
+        seen[i] = digest(&f, 1, 1);
+        for (int k = 0; k < i; k++)
+            if (seen[k] == seen[i])
+                fail_msg("lenses \"%s\" and \"%s\"", lenses[k], lenses[i]);
+    }
+    tiny_free(&f);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_exif),         cmocka_unit_test(test_turned),
-        cmocka_unit_test(test_four_colours), cmocka_unit_test(test_lists),
-        cmocka_unit_test(test_max_frames),   cmocka_unit_test(test_changed),
-        cmocka_unit_test(test_verify),       cmocka_unit_test(test_digest),
+        cmocka_unit_test(test_exif),           cmocka_unit_test(test_turned),
+        cmocka_unit_test(test_four_colours),   cmocka_unit_test(test_lists),
+        cmocka_unit_test(test_max_frames),     cmocka_unit_test(test_changed),
+        cmocka_unit_test(test_verify),         cmocka_unit_test(test_digest),
+        cmocka_unit_test(test_digest_of_lens),
     };
 
     return cmocka_run_group_tests_name("scene input", tests, NULL, NULL);
