@@ -47,8 +47,8 @@ static const signature SIGNATURES[] = {
     SIGNATURE("gif", 0, "GIF8"),
 };
 
-/* Transport streams have the byte 0x47 at the begin of each packet of 188 bytes, or 4 bytes later
- * in packets of 192 bytes. */
+/* Transport streams have the byte 0x47, a letter in texts, at the begin of each packet of 188
+ * bytes, or 4 bytes later in packets of 192 bytes. */
 static int is_transport_stream(const uint8_t *head, size_t n)
 {
     enum { SYNC = 0x47, PACKET = 188, TIMED_PACKET = 192, TIME = 4 };
@@ -57,7 +57,7 @@ static int is_transport_stream(const uint8_t *head, size_t n)
                                        (head[TIME] == SYNC && head[TIME + TIMED_PACKET] == SYNC));
 }
 
-static const char *find(const uint8_t *head, size_t n)
+static const char *find_signature(const uint8_t *head, size_t n)
 {
     for (size_t i = 0; i < sizeof SIGNATURES / sizeof SIGNATURES[0]; i++) {
         const signature *s = &SIGNATURES[i];
@@ -65,7 +65,7 @@ static const char *find(const uint8_t *head, size_t n)
         if (n >= s->at + s->n && memcmp(head + s->at, s->bytes, s->n) == 0)
             return s->demuxer;
     }
-    return is_transport_stream(head, n) ? "mpegts" : NULL;
+    return NULL;
 }
 
 static int is_text(const uint8_t *head, size_t n)
@@ -87,14 +87,15 @@ const char *ted4_video_demuxer(const char *video, ted4_message *m)
         return NULL;
     }
     const size_t n = fread(head, 1, sizeof head, f);
-    const char *demuxer = find(head, n);
+    const char *demuxer = find_signature(head, n);
+    const int text = demuxer == NULL && is_text(head, n);
 
     fclose(f);
-    if (is_text(head, n)) {
+    if (demuxer == NULL && !text && is_transport_stream(head, n))
+        demuxer = "mpegts";
+    if (text)
         ted4_say(m, "%s: %s, expected a video", video, n == 0 ? "empty" : "text (a playlist?)");
-        return NULL;
-    }
-    if (demuxer == NULL)
+    else if (demuxer == NULL)
         ted4_say(m,
                  "%s: begins like no video that is known here, expected MP4, MOV, Matroska, WebM, "
                  "AVI, MPEG, H.264, HEVC, Y4M, Ogg, FLV, ASF, IVF or GIF",

@@ -8,7 +8,7 @@
 
 /* Returns the name of the ffmpeg demuxer that reads the file, which ffmpeg must not guess itself:
  * it would take a playlist in any disguise, and open the files that it lists. Returns NULL with *m
- * filled if the file cannot be read, is text, or has an unknown signature. */
+ * filled if the file cannot be read or has no signature that is known here, as text has none. */
 const char *ted4_video_demuxer(const char *video, ted4_message *m);
 
 #endif

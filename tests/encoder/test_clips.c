@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "test.h"
+#include "data/video_kind.h"
 #include "refuse.h"
 #include "tiny_scene.h"
 
@@ -234,6 +235,31 @@ static void test_playlists(void **state)
     tiny_free(&f);
 }
 
+/* Bright pixels, uncompressed, look like text, but a signature says that they are none. Letters
+ * where a transport stream has its sync bytes do not. */
+static void test_bright_video(void **state)
+{
+    static const char head[] = "YUV4MPEG2 W64 H48 F25:1 Ip A1:1 C420jpeg\nFRAME\n";
+    uint8_t bytes[64 * 48 * 3 / 2];
+    tiny_folder f = tiny_new();
+    ted4_message m = { "" };
+
+    (void)state;
+    memset(bytes, 'G', sizeof bytes);
+    tiny_bytes(&f, "a.mp4", bytes, sizeof bytes);
+    assert_null(ted4_video_demuxer(tiny_path(&f, "a.mp4"), &m));
+    assert_non_null(strstr(m.text, "a.mp4: text (a playlist?)"));
+    memcpy(bytes, head, sizeof head - 1);
+    tiny_bytes(&f, "a.y4m", bytes, sizeof bytes);
+
+    const char *demuxer = ted4_video_demuxer(tiny_path(&f, "a.y4m"), &m);
+
+    if (demuxer == NULL)
+        fail_msg("%s", m.text);
+    assert_string_equal(demuxer, "yuv4mpegpipe");
+    tiny_free(&f);
+}
+
 /* Playlists that are not text, and some behind the first bytes of a video, for which ffmpeg is
  * started if it is there. */
 static void test_disguised_playlists(void **state)
@@ -259,6 +285,8 @@ static void test_disguised_playlists(void **state)
         DISGUISE("OggS\0", ""),
         DISGUISE("\0\0\1\xba", ""),
         DISGUISE("FLV\1", ""),
+        DISGUISE("GIF89a", ""),
+        DISGUISE("YUV4MPEG2 ", ""),
     };
 #undef DISGUISE
 #undef LIST
@@ -311,7 +339,7 @@ int main(void)
         cmocka_unit_test(test_stills),    cmocka_unit_test(test_copies),
         cmocka_unit_test(test_rows),      cmocka_unit_test(test_starts),
         cmocka_unit_test(test_playlists), cmocka_unit_test(test_disguised_playlists),
-        cmocka_unit_test(test_example),
+        cmocka_unit_test(test_example),   cmocka_unit_test(test_bright_video),
     };
 
     return cmocka_run_group_tests_name("clips", tests, NULL, NULL);
