@@ -62,8 +62,8 @@ typedef struct {
      * PNG specifies */
     int premultiplied;
     /* hold_out: [n_hold_out] cameras whose pictures are the test pictures, in place of the layout's
-     * split. Each is named by the camera's label, its folder, or the name of one of its pictures.
-     * Borrowed. */
+     * split. Each is named by the camera's label, a folder of cameras, or the name of one of its
+     * pictures. Borrowed. */
     const char *const *hold_out;
     size_t n_hold_out; /* 0: use the layout's split */
     /* Called about once per second while a video is unpacked, with the video's file and the number

@@ -47,13 +47,12 @@ static const char *short_label(const char *label, size_t *n)
     return folder;
 }
 
-static int is_label(const ted4_shot *s, const char *name)
+static int is_short_label(const ted4_shot *s, const char *name)
 {
     size_t n;
     const char *label = short_label(s->camera, &n);
 
-    return !s->is_posed &&
-           (strcmp(s->camera, name) == 0 || (strlen(name) == n && strncmp(label, name, n) == 0));
+    return strlen(name) == n && strncmp(label, name, n) == 0;
 }
 
 /* Does the path, with or without its extension, end with the parts of name? */
@@ -95,6 +94,20 @@ static const char *name_of(const ted4_raw_scene *s, const ted4_shot *shot, size_
     return name;
 }
 
+/* Do the cameras of these shots have the same name? Several cameras have one where their pictures
+ * lie in one folder of COLMAP. */
+static int same_name(const ted4_shot *a, const ted4_shot *b)
+{
+    size_t n, k;
+
+    if (a->is_posed || b->is_posed)
+        return strcmp(a->camera, b->camera) == 0;
+
+    const char *const name = short_label(a->camera, &n), *const other = short_label(b->camera, &k);
+
+    return n == k && memcmp(name, other, n) == 0;
+}
+
 /* Lists the names of cameras, or of pictures where cameras have no name, as far as there is
  * room. */
 static void list_names(const ted4_raw_scene *s, char *text, size_t size)
@@ -106,7 +119,7 @@ static void list_names(const ted4_raw_scene *s, char *text, size_t size)
     for (size_t i = 0; i < s->n_shots; i++) {
         const ted4_shot *shot = &s->shots[i];
         size_t length = 0, k = 0;
-        while (k < i && strcmp(s->shots[k].camera, shot->camera) != 0)
+        while (k < i && !same_name(&s->shots[k], shot))
             k++;
         if (k < i)
             continue;
@@ -124,15 +137,29 @@ static void list_names(const ted4_raw_scene *s, char *text, size_t size)
         snprintf(text + strlen(text), 39, ", ... (%zu in all)", n);
 }
 
-/* Returns the label of the camera that name refers to, or NULL with *m filled. */
+/* Marks the shots of the camera with this label as test or, if there is none, of all cameras that
+ * are called so for short. Returns whether there are any. */
+static int hold_out_cameras(ted4_raw_scene *s, const char *name)
+{
+    int found = 0;
+
+    for (int shorter = 0; shorter < 2 && !found; shorter++)
+        for (size_t i = 0; i < s->n_shots; i++) {
+            ted4_shot *shot = &s->shots[i];
+
+            if (!shot->is_posed &&
+                (shorter ? is_short_label(shot, name) : strcmp(shot->camera, name) == 0))
+                found = shot->is_test = 1;
+        }
+    return found;
+}
+
+/* Returns the label of the camera of the picture that name refers to, or NULL with *m filled. */
 static const char *find_camera(const ted4_raw_scene *s, const char *name, ted4_message *m)
 {
     const char *found = NULL;
     char names[700];
 
-    for (size_t i = 0; i < s->n_shots; i++)
-        if (is_label(&s->shots[i], name))
-            return s->shots[i].camera;
     for (size_t i = 0; i < s->n_shots; i++) {
         if (!is_picture(&s->shots[i], name))
             continue;
@@ -158,6 +185,8 @@ int ted4_raw_scene_hold_out_named(ted4_raw_scene *s, const ted4_dataset_options 
     for (size_t i = 0; i < s->n_shots; i++)
         s->shots[i].is_test = 0;
     for (size_t k = 0; k < o->n_hold_out; k++) {
+        if (hold_out_cameras(s, o->hold_out[k]))
+            continue;
         const char *camera = find_camera(s, o->hold_out[k], m);
         if (camera == NULL)
             return -1;

@@ -129,6 +129,49 @@ static void test_pictures(void **state)
     tiny_free(&f);
 }
 
+/* COLMAP may have one camera for each picture, or several in a folder. The folder is the name of
+ * all of them, and a picture or a label that of one. */
+static void test_folders(void **state)
+{
+    static const char *const pictures[] = { "left/0.png", "left/1.png", "right/0.png",
+                                            "right/1.png" };
+    static const struct {
+        const char *name, *held; /* of pictures: 1 for those held out */
+    } cases[] = {
+        { "left", "1100" },       { "right", "0011" },    { "1/left/", "1000" },
+        { "left/1.png", "0100" }, { "3/right/", "0011" }, { "right/0", "0011" },
+    };
+    tiny_folder f = tiny_new();
+
+    (void)state;
+    tiny_text(&f, "sparse/0/cameras.txt",
+              "1 SIMPLE_PINHOLE 16 12 9 8 6\n2 SIMPLE_PINHOLE 16 12 9 8 6\n"
+              "3 SIMPLE_PINHOLE 16 12 9 8 6\n");
+    tiny_text(&f, "sparse/0/images.txt",
+              "1 1 0 0 0 0 0 0 1 left/0.png\n\n2 1 0 0 0 0 0 0 2 left/1.png\n\n"
+              "3 1 0 0 0 0 0 0 3 right/0.png\n\n4 1 0 0 0 0 0 0 3 right/1.png\n\n");
+    for (int i = 0; i < 4; i++) {
+        char path[32];
+
+        snprintf(path, sizeof path, "images/%s", pictures[i]);
+        tiny_picture(&f, path, TINY_W, TINY_H, i);
+    }
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        ted4_dataset d;
+
+        assert_string_equal(load(&d, &f, &cases[i].name, 1), "");
+        for (size_t k = 0; k < d.n_pictures; k++)
+            for (int p = 0; p < 4; p++)
+                if (strstr(d.pictures[k].path, pictures[p]) != NULL &&
+                    d.pictures[k].is_test != cases[i].held[p] - '0')
+                    fail_msg("%s: %s: is_test %d", cases[i].name, pictures[p],
+                             d.pictures[k].is_test);
+        ted4_dataset_free(&d);
+    }
+    refused(&f, "middle", "expected one of: left, right");
+    tiny_free(&f);
+}
+
 /* Pictures that the layout's own split leaves out are used again. Holding out all cameras is an
  * error, since nothing would remain. */
 static void test_whole(void **state)
@@ -181,6 +224,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = { cmocka_unit_test(test_labels),
                                         cmocka_unit_test(test_pictures),
+                                        cmocka_unit_test(test_folders),
                                         cmocka_unit_test(test_whole) };
 
     return cmocka_run_group_tests_name("hold out", tests, NULL, NULL);
