@@ -256,6 +256,21 @@ static int fill(const unpacking *a, size_t most, ted4_message *m)
     return write_count(folder, n) == 0 ? 0 : ted4_say(m, "%s: %s", folder, strerror(errno));
 }
 
+/* Gives a complete folder its final name. A folder of that name makes way if it lacks frames, and
+ * stays if it does not, because another program was first. Returns 0, or -1 with *m filled. */
+static int settle(const char *folder, const char *final, ted4_message *m)
+{
+    if (rename(folder, final) == 0 || is_complete(final))
+        return 0;
+    remove_folder(final);
+    if (rename(folder, final) == 0)
+        return 0;
+
+    const int why = errno;
+
+    return is_complete(final) ? 0 : ted4_say(m, "%s: %s", final, strerror(why));
+}
+
 /* Unpacks into a new folder beside the final one, and renames it. */
 static int unpack(const unpacking *a, size_t most, const char *final, ted4_message *m)
 {
@@ -275,8 +290,8 @@ static int unpack(const unpacking *a, size_t most, const char *final, ted4_messa
     with_folder.folder = folder;
 
     int result = fill(&with_folder, most, m);
-    if (result == 0 && rename(folder, final) != 0 && !is_complete(final))
-        result = ted4_say(m, "%s: %s", final, strerror(errno));
+    if (result == 0)
+        result = settle(folder, final, m);
     /* The folder does not exist any more if it was renamed. It does if this failed or another
      * program was first. */
     remove_folder(folder);
@@ -306,7 +321,6 @@ char *ted4_video_unpack(const char *video, size_t most, const ted4_dataset_optio
     else if (cache != NULL && (final = final_folder(cache, path, &s, limit)) == NULL)
         ted4_say_no_memory(m);
     if (final != NULL && !is_complete(final)) {
-        remove_folder(final);
         a.demuxer = ted4_video_demuxer(path, m);
         if (a.demuxer == NULL || unpack(&a, limit, final, m) != 0) {
             free(final);
