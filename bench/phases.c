@@ -147,7 +147,8 @@ BETWEEN(PHASE_CODE, ted4_status, ted4_encode_with_text,
 BETWEEN(PHASE_PREVIEW, double, ted4_trainer_preview, (ted4_trainer * t, int n), (t, n))
 BETWEEN(PHASE_LOG, int, ted4_run_log_step,
         (ted4_run_log * l, const ted4_trainer *t, char *why, size_t size), (l, t, why, size))
-BETWEEN(PHASE_SAVE, int, ted4_checkpoint_save, (ted4_trainer * t, const char *path), (t, path))
+BETWEEN(PHASE_SAVE, int, ted4_checkpoint_write, (ted4_trainer * t, FILE *f, const char *name),
+        (t, f, name))
 BETWEEN(PHASE_VERIFY, int, ted4_verify,
         (const ted4_scene *s, const uint8_t *bytes, size_t size, const ted4_parallel *p,
          ted4_verified *v, char *why, size_t why_size),

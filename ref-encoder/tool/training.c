@@ -2,6 +2,7 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "training.h"
 
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,6 +11,7 @@
 #include "describe_trained.h"
 #include "stop.h"
 #include "tool/json_string.h"
+#include "tool/output.h"
 #include "train/monitor/checkpoint.h"
 #include "train/step/export_scene.h"
 #include "train/monitor/monitor.h"
@@ -141,13 +143,29 @@ static int log_step(ted4_training *t)
     return bad;
 }
 
+/* Writes the trainer's state into a file, which keeps what it holds if that fails. */
+static int write_state(ted4_training *t, const char *path)
+{
+    ted4_output o;
+    int bad = ted4_output_open(&o, path) != 0;
+
+    if (!bad && ted4_checkpoint_write(t->trainer, o.file, path) != 0) {
+        ted4_output_cancel(&o);
+        return fail(t);
+    }
+    bad = bad || ted4_output_close(&o) != 0;
+    if (bad)
+        snprintf(t->why, sizeof t->why, "%s: %s", path, strerror(errno));
+    return bad ? -1 : 0;
+}
+
 static int save(ted4_training *t)
 {
     if (t->checkpoint == NULL)
         return 0;
     ted4_run_log_tick(&t->log, t->trainer);
-    if (ted4_checkpoint_save(t->trainer, t->checkpoint) != 0)
-        return fail(t);
+    if (write_state(t, t->checkpoint) != 0)
+        return -1;
     t->saved = (int64_t)t->trainer->iteration;
     return 0;
 }
@@ -189,7 +207,7 @@ static int keep_stage1(ted4_training *t)
     if (path == NULL || !leads(t) || !ted4_at_stage1_end(tr) || exists(path))
         return 0;
     ted4_run_log_tick(&t->log, tr);
-    return ted4_checkpoint_save(tr, path) != 0 ? fail(t) : 0;
+    return write_state(t, path);
 }
 
 /* Adapts the log and the estimate after the trainer has restarted or has gone back. */

@@ -44,7 +44,6 @@ static void test_nan(void **state)
             strstr(t.message.text, "not finite at step 130; there is no good state before it"));
         assert_int_equal(ted4_checkpoint_save(&t, path), -1);
         ted4_trainer_finish(&t);
-        assert_int_equal(access(tiny_path(&f, "checkpoint.part"), F_OK), -1);
 
         ball_begin(&t, &o, &d, NULL);
         assert_int_equal(ted4_checkpoint_load(&t, path), 0);

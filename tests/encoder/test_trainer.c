@@ -235,27 +235,19 @@ static void test_bad_checkpoints(void **state)
     check_refused(&o, &moving_scene, stop_path(1));
 }
 
-/* A state that no checkpoint may contain is not written, and the last good checkpoint remains,
- * although no system call failed. */
+/* A state that no checkpoint may contain is an error, although no system call failed. */
 static void test_impossible_state(void **state)
 {
     const ted4_train_options o = ball_options();
     ted4_trainer t;
-    ball_file before, after;
 
     (void)state;
     ball_begin(&t, &o, &moving_scene, NULL);
-    assert_int_equal(ted4_checkpoint_save(&t, stop_path(0)), 0);
-    before = read_file(stop_path(0));
     t.net.bits[0] = 0;
     errno = 0;
     assert_int_equal(ted4_checkpoint_save(&t, stop_path(0)), -1);
     assert_non_null(strstr(t.message.text, stop_path(0)));
-    after = read_file(stop_path(0));
-    ball_check_same(&before, &after);
     ted4_trainer_finish(&t);
-    free(before.bytes);
-    free(after.bytes);
 }
 
 /* ---- parts that are not needed ---- */

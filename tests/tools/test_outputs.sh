@@ -68,6 +68,19 @@ chmod 640 "$out/at/m.ted4"
 equal mode_transcode "$(mode "$out/at/m.ted4")" -rw-r-----
 ln -s elsewhere/x.ply "$out/at/x.ply"
 chmod 600 "$out/at/m.ted4"
+# Checkpoints are outputs, too, and two runs that share a file do not share its temporary name.
+mkdir "$out/at/m.point.part" "$out/at/m.stage1.part"
+: >"$out/at/m.point"
+chmod 600 "$out/at/m.point"
+ln -s m.point "$out/at/link.point"
+(cd "$out/at" && umask 022 && "$bin/ted4enc" "$scene" -o n.ted4 $small -f --checkpoint link.point \
+    --stage1 m.stage1) || fail checkpoint_replaced "no file"
+equal checkpoint_link "$(readlink "$out/at/link.point") $(mode "$out/at/m.point")" \
+    "m.point -rw-------"
+[ -s "$out/at/m.point" ] && [ -s "$out/at/m.stage1" ] && ok checkpoint_written ||
+    fail checkpoint_written "$(ls -l "$out/at")"
+rm -r "$out/at/m.point.part" "$out/at/m.stage1.part"
+equal checkpoint_left "$(ls -A "$out/at" | grep 'part$')" ""
 (cd "$out/at" && ln -s m.raw x.raw && : >m.raw && chmod 600 m.raw &&
     umask 022 && "$bin/ted4dec" "$out/a.ted4" -o x.raw --time 0 -f -q)
 equal export_link "$(readlink "$out/at/x.raw") $(mode "$out/at/m.raw")" "m.raw -rw-------"

@@ -410,34 +410,36 @@ static int run(ted4_trainer *t, FILE *file, ted4_snapshot *memory, size_t capaci
     return s.failed ? -1 : 0;
 }
 
+/* Writes any state. The message needs the errno of the first failure; a state that a checkpoint may
+ * not hold sets none. */
+static int put_state(ted4_trainer *t, FILE *f, const char *name)
+{
+    errno = 0;
+    if (run(t, f, NULL, 0, 1, 1) == 0 && fflush(f) == 0 && fsync(fileno(f)) == 0)
+        return 0;
+    return ted4_trainer_fail(t, "%s: %s", name, strerror(errno != 0 ? errno : EIO));
+}
+
+int ted4_checkpoint_write(ted4_trainer *t, FILE *f, const char *name)
+{
+    return ted4_trainer_check(t, 1) != 0 ? -1 : put_state(t, f, name);
+}
+
 int ted4_checkpoint_save(ted4_trainer *t, const char *path)
 {
-    char name[4096];
     FILE *f;
 
     if (ted4_trainer_check(t, 1) != 0)
         return -1;
-    if (snprintf(name, sizeof name, "%s.part", path) >= (int)sizeof name)
-        return ted4_trainer_fail(t, "%s: name too long", path);
-    f = fopen(name, "wb");
+    f = fopen(path, "wb");
     if (f == NULL)
-        return ted4_trainer_fail(t, "%s: %s", name, strerror(errno));
+        return ted4_trainer_fail(t, "%s: %s", path, strerror(errno));
 
-    /* The message needs the errno of the first failure: fclose() after a failed write fails again,
-     * for another reason. A state that a checkpoint may not hold sets no errno. */
-    errno = 0;
+    const int bad = put_state(t, f, path);
 
-    const int bad = run(t, f, NULL, 0, 1, 1) != 0 || fflush(f) != 0 || fsync(fileno(f)) != 0;
-    int why = !bad ? 0 : errno != 0 ? errno : EIO;
-
-    if (fclose(f) != 0 && !bad)
-        why = errno;
-    if (why == 0 && rename(name, path) != 0)
-        why = errno;
-    if (why == 0)
-        return 0;
-    remove(name);
-    return ted4_trainer_fail(t, "%s: %s", path, strerror(why));
+    if (fclose(f) != 0 && bad == 0)
+        return ted4_trainer_fail(t, "%s: %s", path, strerror(errno));
+    return bad;
 }
 
 static int load(ted4_trainer *t, FILE *f, ted4_snapshot *memory, const char *name, int whole)

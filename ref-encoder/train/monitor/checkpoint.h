@@ -6,11 +6,16 @@
 #ifndef TED4_CHECKPOINT_H
 #define TED4_CHECKPOINT_H
 
+#include <stdio.h>
+
 #include "train/state/trainer.h"
 
-/* Writes a temporary file and renames it, so that the last good checkpoint survives any failure.
- * Does not write a state that has a value that is not finite. Returns 0, or -1 with t->message
- * filled. */
+/* Writes the state to f, and brings it to the disk. Does not write a state that has a value that is
+ * not finite. name: that of the file, for messages. Returns 0, or -1 with t->message filled. What f
+ * holds then is no checkpoint: a file that is to survive any failure is written under another name
+ * first. */
+int ted4_checkpoint_write(ted4_trainer *t, FILE *f, const char *name);
+/* Writes the state into the file at path, as above. */
 int ted4_checkpoint_save(ted4_trainer *t, const char *path);
 /* Restores a state into a trainer that ted4_trainer_init made from the same scene and options.
  * Returns 0, or -1 with t->message filled (other options, another scene, a damaged file); t can
