@@ -9,10 +9,12 @@
 
 #include "tool/leftovers.h"
 
-static const int signals[] = { SIGINT, SIGTERM };
+static const int signals[] = { SIGINT, SIGTERM, SIGHUP };
 enum { N_SIGNALS = (int)(sizeof signals / sizeof signals[0]) };
 
 static volatile sig_atomic_t asked, silent, keeping;
+
+static void take(int signal);
 
 static void say(const char *word)
 {
@@ -20,23 +22,35 @@ static void say(const char *word)
         silent = 1;
 }
 
+/* After a first signal the others have their default actions again. But SIGHUP is ignored while the
+ * last step is made: that a terminal was closed is told by the system and by a shell, and is one
+ * request. */
+static void let_go(void)
+{
+    struct sigaction later, now;
+
+    memset(&later, 0, sizeof later);
+    for (int i = 0; i < N_SIGNALS; i++) {
+        later.sa_handler = keeping && signals[i] == SIGHUP ? SIG_IGN : SIG_DFL;
+        if (sigaction(signals[i], NULL, &now) == 0 && now.sa_handler == take)
+            sigaction(signals[i], &later, NULL);
+    }
+}
+
 /* The signal handler. Unless it only records the signal, it raises it again with the default
  * action, which takes effect when the handler returns. */
 static void take(int signal)
 {
-    struct sigaction usual;
-    const int before = errno, again = asked != 0;
+    const int before = errno, first = asked == 0;
+    const int at_once = !keeping || (!first && signal != SIGHUP);
 
-    asked = signal;
-    memset(&usual, 0, sizeof usual);
-    usual.sa_handler = SIG_DFL;
-    for (int i = 0; i < N_SIGNALS; i++)
-        sigaction(signals[i], &usual, NULL);
-    if (!keeping && !again)
-        say("\nted4enc: stopped before training; nothing was written\n");
-    else if (!again)
-        say("\nted4enc: stopping after this step; once more ends at once\n");
-    if (!keeping || again) {
+    if (first)
+        asked = signal;
+    let_go();
+    if (first)
+        say(keeping ? "\nted4enc: stopping after this step; once more ends at once\n"
+                    : "\nted4enc: stopped before training; nothing was written\n");
+    if (at_once) {
         ted4_leftovers_remove();
         raise(signal);
     }

@@ -162,6 +162,8 @@ static void test_moments(void **state)
 {
     ball_file want;
 
+    static const int signals[] = { SIGINT, SIGTERM, SIGHUP };
+
     (void)state;
     begin_test();
     assert_int_equal(finish(begin(NULL, NULL, NULL)), 0);
@@ -169,7 +171,7 @@ static void test_moments(void **state)
     gone("out/x.ted4");
     gone("out/l");
     for (size_t i = 0; i < sizeof moments / sizeof moments[0]; i++)
-        stop_at(&moments[i], i % 2 == 0 ? SIGINT : SIGTERM, &want);
+        stop_at(&moments[i], signals[i % 3], &want);
     free(want.bytes);
 }
 
@@ -227,8 +229,8 @@ static void test_no_checkpoint(void **state)
     expect_files("l");
 }
 
-/* The second signal meets the default action; a signal that was ignored at the start stays
- * ignored. */
+/* The second signal meets the default action; a signal that was ignored at the start stays ignored,
+ * also after another one. */
 static void test_again(void **state)
 {
     const moment m = { "\"step\":250,", 0 };
@@ -253,6 +255,33 @@ static void test_again(void **state)
     wait_for(&m);
     kill(child, SIGINT);
     assert_int_equal(finish(child), 0);
+    signal(SIGINT, SIG_IGN);
+    child = begin(NULL, NULL, NULL);
+    signal(SIGINT, SIG_DFL);
+    gone("out/l");
+    wait_for(&m);
+    kill(child, SIGTERM);
+    pause_us(100);
+    kill(child, SIGINT);
+    assert_int_equal(finish(child), 128 + SIGTERM);
+}
+
+/* Both the system and a shell tell a program that its terminal was closed: that is one request. */
+static void test_hung_up_twice(void **state)
+{
+    const moment m = { "\"step\":250,", 0 };
+    pid_t child;
+
+    (void)state;
+    begin_test();
+    child = begin("--checkpoint", "out/c", NULL);
+    wait_for(&m);
+    for (int i = 0; i < 3; i++) {
+        kill(child, SIGHUP);
+        pause_us(100);
+    }
+    assert_int_equal(finish(child), 128 + SIGHUP);
+    expect_files("c l");
 }
 
 int main(void)
@@ -260,9 +289,11 @@ int main(void)
     const struct CMUnitTest tests[] = { cmocka_unit_test(test_loading),
                                         cmocka_unit_test(test_moments),
                                         cmocka_unit_test(test_no_checkpoint),
-                                        cmocka_unit_test(test_again) };
+                                        cmocka_unit_test(test_again),
+                                        cmocka_unit_test(test_hung_up_twice) };
 
-    /* A shell that runs commands in the background makes them ignore the signal. */
+    /* A shell that runs commands in the background, or nohup, makes them ignore signals. */
     signal(SIGINT, SIG_DFL);
+    signal(SIGHUP, SIG_DFL);
     return cmocka_run_group_tests_name("ending by a signal", tests, set_up, tear_down);
 }
