@@ -130,6 +130,7 @@ $B/tests/encoder/test_checkpoint_fields: $B/ref-encoder/tool/search_report.o
 $B/tests/tools/test_estimate: $B/ref-encoder/tool/estimate.o
 $B/tests/tools/test_install $B/tests/tools/test_library: | $(PROGS) $(SHARED) $B/ted4conf \
         $B/ted4tolerance man
+$B/tests/tools/test_look: $(ENC_TOOL:%.c=$B/%.o)
 $B/tests/tools/test_verify: $B/ref-encoder/tool/verify.o
 $(addprefix $B/tests/encoder/test_starved_,trainer writer): override LDFLAGS += \
         -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=aligned_alloc

@@ -11,7 +11,6 @@
 #include "train/search/rd_prune.h"
 #include "train/search/static_test.h"
 #include "train/search/weight_bits.h"
-#include "train/step/events.h"
 #include "training.h"
 
 /* Expected work of the model search. It tries at least UNTRAINED candidates without training, and
@@ -49,19 +48,22 @@ static double trials_now(const ted4_trainer *t)
     return t->search.decided == TED4_DECIDED_MODEL ? search_steps(t) : t->onlooker.budget;
 }
 
-/* Steps between two queries of whether seeding will take place; a query has to examine
- * all pictures. */
+/* Steps between two queries of when anchors come; a query has to examine all pictures. */
 enum { ASK_EVERY = 500 };
 
 static ted4_work work_of(ted4_training *t)
 {
     const ted4_trainer *tr = t->trainer;
     const ted4_onlooker *o = &tr->onlooker;
-    const double before = t->mv_seed_share;
+
+    if (t->growth.seed_share < 0 || tr->iteration % ASK_EVERY == 0)
+        t->growth = ted4_schedule_growth(tr);
+
     ted4_work w = { .stage1 = tr->opt.stage1,
                     .stage2 = tr->opt.stage2,
-                    .first_growth = 0.05,
-                    .mv_seed_at = 0.3,
+                    .first_growth = t->growth.from,
+                    .mv_seed_at = t->growth.seed_at,
+                    .mv_seed_share = t->growth.seed_share,
                     .most_anchors = tr->opt.max_anchors,
                     .trials = trials_left(tr),
                     .step = (double)(ted4_stage_position(tr) +
@@ -69,9 +71,6 @@ static ted4_work work_of(ted4_training *t)
                     .anchors = (double)tr->anchors.n,
                     .probing = o->busy == TED4_BUSY_PROBE };
 
-    if (before < 0 || tr->iteration % ASK_EVERY == 0)
-        ted4_schedule_growth(tr, &w.first_growth, &w.mv_seed_at, &t->mv_seed_share);
-    w.mv_seed_share = t->mv_seed_share;
     w.probe = w.probing ? 0.5 * o->budget : ted4_probe_steps(tr);
     w.spent = o->busy != TED4_BUSY_TRAINING ? o->spent : 0;
     w.budget = o->busy == TED4_BUSY_PROBE    ? o->budget

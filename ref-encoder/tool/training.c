@@ -88,7 +88,7 @@ int ted4_training_begin(ted4_training *t, const ted4_request *r, ted4_trainer *t
     t->teller = teller;
     t->log.file = -1;
     t->checkpoint = r->checkpoint;
-    t->mv_seed_share = -1;
+    t->growth.seed_share = -1;
     t->saved = -1;
     t->facts.psnr = t->facts.bytes = -1;
     ted4_estimate_begin(&t->estimate);

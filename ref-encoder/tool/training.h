@@ -8,6 +8,7 @@
 #include "request.h"
 #include "run_log.h"
 #include "teller.h"
+#include "train/step/events.h"
 #include "verify.h"
 
 typedef struct {
@@ -18,9 +19,8 @@ typedef struct {
     ted4_teller *teller;    /* borrowed */
     ted4_facts facts;       /* the facts last given to the teller */
     ted4_estimate estimate;
-    /* Share of the anchors that is reserved for seeding, by the last query of the
-     * schedule; negative: there was none. */
-    double mv_seed_share;
+    /* When anchors come, by the last query; seed_share negative: there was none. */
+    ted4_growth growth;
     int estimated;  /* 1: the estimated duration of the run has been printed */
     int64_t saved;  /* the step that the checkpoint holds; negative: there is no checkpoint */
     int asked;      /* the signal that asks for the end, as all processes know it; 0: none */

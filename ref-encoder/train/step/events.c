@@ -68,12 +68,13 @@ static int seeding_due(const ted4_trainer *t)
     return has_seeding(t) && now == stage1_step(t, seed_at(t));
 }
 
-void ted4_schedule_growth(const ted4_trainer *t, double *from, double *mv_seed_at,
-                          double *mv_seed_share)
+ted4_growth ted4_schedule_growth(const ted4_trainer *t)
 {
-    *from = GROW_FROM;
-    *mv_seed_at = seed_at(t);
-    *mv_seed_share = has_seeding(t) ? t->opt.sprouts : 0.0;
+    const ted4_growth g = { .from = GROW_FROM,
+                            .seed_at = seed_at(t),
+                            .seed_share = has_seeding(t) ? t->opt.sprouts : 0.0 };
+
+    return g;
 }
 
 /* Returns by how many anchors the model may grow, up to a share of max_anchors. */
