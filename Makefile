@@ -119,7 +119,7 @@ SCENE_TESTS = tools/test_scene tools/test_scene_shapes tools/test_scene_sets \
         tools/test_motion_points tools/test_ways encoder/test_layouts encoder/test_hold_out \
         encoder/test_exposure
 $(SCENE_TESTS:%=$B/tests/%): $(SCENE_SRC:%.c=$B/%.o)
-$B/tests/tools/test_run_log: $(addprefix $B/ref-encoder/tool/,run_log.o teller.o)
+$B/tests/tools/test_run_log: $(addprefix $B/ref-encoder/tool/,run_log.o json_line.o teller.o)
 $B/tests/tools/test_teller: $B/ref-encoder/tool/teller.o
 $B/tests/tools/test_align: $B/ref-encoder/tool/align.o
 $B/tests/tools/test_belongs: $(addprefix $B/ref-encoder/tool/,belongs.o sheet.o)

@@ -12,6 +12,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "json_line.h"
 #include "train/search/candidates.h"
 #include "train/state/anchor_masks.h"
 #include "train/monitor/monitor.h"
@@ -19,7 +20,7 @@
 #include "train/monitor/scale.h"
 
 /* This member is written, and read back by find_end. */
-#define CPU_SECONDS "\"cpu_seconds\":"
+#define CPU_SECONDS "cpu_seconds"
 
 static double seconds_of(clockid_t clock)
 {
@@ -62,11 +63,11 @@ static off_t find_end(FILE *f, uint64_t step, uint64_t rollbacks, double *cpu)
                   count > rollbacks))
             break;
         else {
-            const char *said = strstr(line, CPU_SECONDS);
+            const char *said = strstr(line, "\"" CPU_SECONDS "\":");
 
             end += n;
             if (said != NULL)
-                *cpu = strtod(said + sizeof CPU_SECONDS - 1, NULL);
+                *cpu = strtod(said + sizeof CPU_SECONDS + 2, NULL);
         }
     }
     free(line);
@@ -145,67 +146,109 @@ void ted4_run_log_rewind(ted4_run_log *l, const ted4_trainer *t)
     l->last_cpu = l->cpu_seconds;
 }
 
-enum { TERMS_TEXT = TED4_TERMS * 26, MOST_LINE = 1200 + 2 * TERMS_TEXT };
-
 /* Numbers of a line that are not members of the trainer. */
 typedef struct {
     const char *stage;
     double ms, cpu_ms, rate; /* milliseconds per step; Gaussian-pixels per second */
 } line_facts;
 
-/* Formats "feature":x,... of all terms; each number has at most 12 characters. Returns text. */
-static const char *print_terms(char *text, size_t size, const double *x)
+/* Begins a line with the members that all have. event: NULL for the line of a step. */
+static void begin(ted4_json_line *l, const ted4_trainer *t, const char *event)
 {
-    size_t at = 0;
-
-    for (int k = 0; k < TED4_TERMS && at < size; k++)
-        at += (size_t)snprintf(text + at, size - at, "%s\"%s\":%.4g", k == 0 ? "" : ",",
-                               ted4_term_name(k), x[k]);
-    return text;
+    ted4_json_line_begin(l);
+    ted4_json_line_put(l, "step", "%llu", (unsigned long long)t->iteration);
+    if (event == NULL)
+        return;
+    ted4_json_line_put(l, "event", "\"%s\"", event);
+    ted4_json_line_put(l, "rollbacks", "%llu", (unsigned long long)t->monitor.state.rollbacks);
 }
 
-static int print_line(char *line, size_t size, const ted4_run_log *l, const ted4_trainer *t,
-                      const line_facts *f)
+static void put_count(ted4_json_line *l, const char *name, uint64_t x)
+{
+    ted4_json_line_put(l, name, "%llu", (unsigned long long)x);
+}
+
+/* A number before and after something. */
+static void put_pair(ted4_json_line *l, const char *name, int decimals, double before, double after)
+{
+    ted4_json_line_open(l, name, "[");
+    ted4_json_line_fixed(l, NULL, decimals, before);
+    ted4_json_line_fixed(l, NULL, decimals, after);
+    ted4_json_line_close(l, "]");
+}
+
+static void put_bytes(ted4_json_line *l, const ted4_preview *v)
+{
+    static const char *const names[TED4_TYPES] = { [TED4_FEATURE] = "feature",
+                                                   [TED4_SCALING] = "scaling",
+                                                   [TED4_OFFSET] = "offset",
+                                                   [TED4_PHI] = "phi",
+                                                   [TED4_TAU] = "tau" };
+
+    ted4_json_line_fixed(l, "bytes", 0, v->bytes);
+    ted4_json_line_open(l, "bytes_by_type", "{");
+    ted4_json_line_fixed(l, "positions", 0, v->positions);
+    ted4_json_line_fixed(l, "masks", 0, v->masks);
+    for (int y = 0; y < TED4_TYPES; y++)
+        ted4_json_line_fixed(l, names[y], 0, v->type[y]);
+    ted4_json_line_fixed(l, "networks", 0, v->networks);
+    ted4_json_line_fixed(l, "frame", 0, v->frame);
+    ted4_json_line_close(l, "}");
+}
+
+static void put_gradients(ted4_json_line *l, const ted4_monitor_state *s)
+{
+    ted4_json_line_open(l, "gradients", "{");
+    for (int k = 0; k < TED4_TERMS; k++)
+        ted4_json_line_digits(l, ted4_term_name(k), 4, ted4_scale_usual(&s->gradient[k]));
+    ted4_json_line_close(l, "}");
+    ted4_json_line_open(l, "peaks", "{");
+    for (int k = 0; k < TED4_TERMS; k++)
+        ted4_json_line_digits(l, ted4_term_name(k), 4, s->gradient[k].peak);
+    ted4_json_line_close(l, "}");
+}
+
+static void put_step(ted4_json_line *j, const ted4_run_log *l, const ted4_trainer *t,
+                     const line_facts *f)
 {
     const ted4_progress *p = &t->progress;
     const ted4_preview *v = &l->preview;
-    const double *b = p->bits, *y = v->type;
-    double usual[TED4_TERMS], peak[TED4_TERMS];
-    char gradients[TERMS_TEXT], peaks[TERMS_TEXT];
 
-    for (int k = 0; k < TED4_TERMS; k++) {
-        usual[k] = ted4_scale_usual(&t->monitor.state.gradient[k]);
-        peak[k] = t->monitor.state.gradient[k].peak;
-    }
-    return snprintf(
-        line, size,
-        "{\"step\":%llu,\"stage\":\"%s\",\"lambda\":%.7g,\"loss\":%.6f,\"l1\":%.6f,\"ssim\":%.6f,"
-        "\"psnr\":%.4f,"
-        "\"anchors\":%zu,\"moving\":%zu,\"splats\":%.0f,\"bytes\":%.0f,"
-        "\"bytes_by_type\":{\"positions\":%.0f,\"masks\":%.0f,\"feature\":%.0f,\"scaling\":%.0f,"
-        "\"offset\":%.0f,"
-        "\"phi\":%.0f,\"tau\":%.0f,\"networks\":%.0f,\"frame\":%.0f},\"bits\":[%.2f,%.2f,%.2f,%.2f,"
-        "%.2f],"
-        "\"skipped\":%llu,\"clamped\":%zu,\"gradients\":{%s},\"peaks\":{%s},\"rollbacks\":%llu,"
-        "\"split\":\"%s\",\"ms\":%.3f,\"cpu_ms\":%.3f,\"gaussian_pixels_per_s\":%.4g,\"seconds\":%."
-        "2f," CPU_SECONDS "%.2f,\"left\":%.1f}\n",
-        (unsigned long long)t->iteration, f->stage, t->opt.lambda, p->loss, p->l1, p->ssim, v->psnr,
-        t->anchors.n, ted4_count_dynamic(t), p->splats, v->bytes, v->positions, v->masks,
-        y[TED4_FEATURE], y[TED4_SCALING], y[TED4_OFFSET], y[TED4_PHI], y[TED4_TAU], v->networks,
-        v->frame, b[TED4_FEATURE], b[TED4_SCALING], b[TED4_OFFSET], b[TED4_PHI], b[TED4_TAU],
-        (unsigned long long)ted4_raster_skipped(t->work.raster), ted4_saturated_values(t),
-        print_terms(gradients, sizeof gradients, usual), print_terms(peaks, sizeof peaks, peak),
-        (unsigned long long)t->monitor.state.rollbacks, v->train ? "train" : "test", f->ms,
-        f->cpu_ms, f->rate, t->seconds, l->cpu_seconds, l->left);
+    begin(j, t, NULL);
+    ted4_json_line_put(j, "stage", "\"%s\"", f->stage);
+    ted4_json_line_digits(j, "lambda", 7, t->opt.lambda);
+    ted4_json_line_fixed(j, "loss", 6, p->loss);
+    ted4_json_line_fixed(j, "l1", 6, p->l1);
+    ted4_json_line_fixed(j, "ssim", 6, p->ssim);
+    ted4_json_line_fixed(j, "psnr", 4, v->psnr);
+    put_count(j, "anchors", t->anchors.n);
+    put_count(j, "moving", ted4_count_dynamic(t));
+    ted4_json_line_fixed(j, "splats", 0, p->splats);
+    put_bytes(j, v);
+    ted4_json_line_open(j, "bits", "[");
+    for (int y = 0; y < TED4_TYPES; y++)
+        ted4_json_line_fixed(j, NULL, 2, p->bits[y]);
+    ted4_json_line_close(j, "]");
+    put_count(j, "skipped", ted4_raster_skipped(t->work.raster));
+    put_count(j, "clamped", ted4_saturated_values(t));
+    put_gradients(j, &t->monitor.state);
+    put_count(j, "rollbacks", t->monitor.state.rollbacks);
+    ted4_json_line_put(j, "split", "\"%s\"", v->train ? "train" : "test");
+    ted4_json_line_fixed(j, "ms", 3, f->ms);
+    ted4_json_line_fixed(j, "cpu_ms", 3, f->cpu_ms);
+    ted4_json_line_digits(j, "gaussian_pixels_per_s", 4, f->rate);
+    ted4_json_line_fixed(j, "seconds", 2, t->seconds);
+    ted4_json_line_fixed(j, CPU_SECONDS, 2, l->cpu_seconds);
+    ted4_json_line_fixed(j, "left", 1, l->left);
 }
 
-/* Writes the whole line or, if the disk is full, nothing of it. Returns 0, or -1 with why filled.
+/* Writes the whole text or, if the disk is full, nothing of it. Returns 0, or -1 with why filled.
  */
-static int put_line(const ted4_run_log *l, const char *line, size_t size, char *why,
-                    size_t why_size)
+static int write_text(const ted4_run_log *l, const char *text, size_t size, char *why,
+                      size_t why_size)
 {
     const off_t before = lseek(l->file, 0, SEEK_END);
-    const ssize_t done = write(l->file, line, size);
+    const ssize_t done = write(l->file, text, size);
 
     if (done == (ssize_t)size)
         return 0;
@@ -216,6 +259,17 @@ static int put_line(const ted4_run_log *l, const char *line, size_t size, char *
     return -1;
 }
 
+/* Ends a line, and writes and frees it. Returns the same as write_text. */
+static int put_line(const ted4_run_log *l, ted4_json_line *line, char *why, size_t why_size)
+{
+    const int bad = ted4_json_line_end(line) != 0
+                        ? say(l->path, "no memory for a line", why, why_size)
+                        : write_text(l, line->text, line->size, why, why_size);
+
+    ted4_json_line_free(line);
+    return bad;
+}
+
 const char *ted4_run_log_stage(const ted4_trainer *t)
 {
     return !t->phase.stage2 ? "1" : t->phase.integer ? "2i" : "2";
@@ -224,7 +278,7 @@ const char *ted4_run_log_stage(const ted4_trainer *t)
 int ted4_run_log_step(ted4_run_log *l, const ted4_trainer *t, char *why, size_t why_size)
 {
     const double steps = (double)(t->iteration - l->last_step);
-    char line[MOST_LINE];
+    ted4_json_line line;
     line_facts f = { .stage = ted4_run_log_stage(t) };
 
     if (steps > 0) {
@@ -236,34 +290,33 @@ int ted4_run_log_step(ted4_run_log *l, const ted4_trainer *t, char *why, size_t 
     ted4_run_log_rewind(l, t);
     if (l->file < 0)
         return 0;
-    return put_line(l, line, (size_t)print_line(line, sizeof line, l, t, &f), why, why_size);
+    put_step(&line, l, t, &f);
+    return put_line(l, &line, why, why_size);
 }
 
 int ted4_run_log_event(ted4_run_log *l, const ted4_trainer *t, char *why, size_t why_size)
 {
     const ted4_anomaly *f = &t->monitor.anomaly;
-    char line[400], anchor[24] = "null";
+    ted4_json_line line;
 
     if (l->file < 0)
         return 0;
+    begin(&line, t, t->monitor.found ? "failure" : "rollback");
+    put_count(&line, "failed", f->step);
+    ted4_json_line_put(&line, "cause", "\"%s\"", f->cause);
+    ted4_json_line_put(&line, "term", "\"%s\"", f->term);
     if (f->anchor >= 0)
-        snprintf(anchor, sizeof anchor, "%lld", (long long)f->anchor);
-
-    const int n =
-        snprintf(line, sizeof line,
-                 "{\"step\":%llu,\"event\":\"%s\",\"rollbacks\":%llu,\"failed\":%llu,"
-                 "\"cause\":\"%s\",\"term\":\"%s\",\"anchor\":%s,\"factor\":%.7g}\n",
-                 (unsigned long long)t->iteration, t->monitor.found ? "failure" : "rollback",
-                 (unsigned long long)t->monitor.state.rollbacks, (unsigned long long)f->step,
-                 f->cause, f->term, anchor, t->monitor.state.factor);
-
-    return put_line(l, line, (size_t)n, why, why_size);
+        put_count(&line, "anchor", (uint64_t)f->anchor);
+    else
+        ted4_json_line_put(&line, "anchor", "null");
+    ted4_json_line_digits(&line, "factor", 7, t->monitor.state.factor);
+    return put_line(l, &line, why, why_size);
 }
 
 int ted4_run_log_closing(ted4_run_log *l, const ted4_trainer *t, char *why, size_t why_size)
 {
     const ted4_closing *c = &t->closing;
-    char line[200];
+    ted4_json_line line;
 
     if (l->teller != NULL)
         ted4_teller_say(l->teller,
@@ -273,23 +326,16 @@ int ted4_run_log_closing(ted4_run_log *l, const ted4_trainer *t, char *why, size
                         (unsigned long long)c->closed);
     if (l->file < 0)
         return 0;
-
-    const int n = snprintf(line, sizeof line,
-                           "{\"step\":%llu,\"event\":\"closing\",\"rollbacks\":%llu,"
-                           "\"anchors\":%llu,\"moving\":%llu,\"closed\":%llu}\n",
-                           (unsigned long long)t->iteration,
-                           (unsigned long long)t->monitor.state.rollbacks,
-                           (unsigned long long)c->anchors, (unsigned long long)c->moving,
-                           (unsigned long long)c->closed);
-
-    return put_line(l, line, (size_t)n, why, why_size);
+    begin(&line, t, "closing");
+    put_count(&line, "anchors", c->anchors);
+    put_count(&line, "moving", c->moving);
+    put_count(&line, "closed", c->closed);
+    return put_line(l, &line, why, why_size);
 }
 
 int ted4_run_log_trials(ted4_run_log *l, const ted4_trainer *t, size_t first, char *why,
                         size_t why_size)
 {
-    char line[600];
-
     for (size_t i = first; i < t->search.n_trials; i++) {
         const struct ted4_trial *x = &t->search.trial[i];
 
@@ -304,18 +350,19 @@ int ted4_run_log_trials(ted4_run_log *l, const ted4_trainer *t, size_t first, ch
         if (l->file < 0)
             continue;
 
-        const int n = snprintf(
-            line, sizeof line,
-            "{\"step\":%llu,\"event\":\"capacity\",\"rollbacks\":%llu,\"what\":"
-            "\"%s\",\"from\":%lld,\"to\":%lld,"
-            "\"trained\":%lld,\"taken\":%s,\"cost\":[%.8f,%.8f],\"distortion\":["
-            "%.8f,%.8f],\"bytes\":[%.0f,%.0f]}\n",
-            (unsigned long long)t->iteration, (unsigned long long)t->monitor.state.rollbacks,
-            ted4_candidate_name((ted4_candidate)x->candidate), (long long)x->from, (long long)x->to,
-            (long long)x->steps, x->taken ? "true" : "false", x->before.cost, x->after.cost,
-            x->before.distortion, x->after.distortion, x->before.bytes, x->after.bytes);
+        ted4_json_line line;
 
-        if (put_line(l, line, (size_t)n, why, why_size) != 0)
+        begin(&line, t, "capacity");
+        ted4_json_line_put(&line, "what", "\"%s\"",
+                           ted4_candidate_name((ted4_candidate)x->candidate));
+        ted4_json_line_put(&line, "from", "%lld", (long long)x->from);
+        ted4_json_line_put(&line, "to", "%lld", (long long)x->to);
+        ted4_json_line_put(&line, "trained", "%lld", (long long)x->steps);
+        ted4_json_line_put(&line, "taken", x->taken ? "true" : "false");
+        put_pair(&line, "cost", 8, x->before.cost, x->after.cost);
+        put_pair(&line, "distortion", 8, x->before.distortion, x->after.distortion);
+        put_pair(&line, "bytes", 0, x->before.bytes, x->after.bytes);
+        if (put_line(l, &line, why, why_size) != 0)
             return -1;
     }
     return 0;
@@ -324,19 +371,14 @@ int ted4_run_log_trials(ted4_run_log *l, const ted4_trainer *t, size_t first, ch
 int ted4_run_log_poses(ted4_run_log *l, const ted4_trainer *t, char *why, size_t why_size)
 {
     const int refined = t->poses.decision == TED4_POSES_REFINED;
-    char line[200];
+    ted4_json_line line;
 
     if (l->file < 0)
         return 0;
-
-    const int n = snprintf(line, sizeof line,
-                           "{\"step\":%llu,\"event\":\"poses\",\"rollbacks\":%llu,"
-                           "\"moved\":%.4f,\"refined\":%s}\n",
-                           (unsigned long long)t->iteration,
-                           (unsigned long long)t->monitor.state.rollbacks, t->poses.moved,
-                           refined ? "true" : "false");
-
-    return put_line(l, line, (size_t)n, why, why_size);
+    begin(&line, t, "poses");
+    ted4_json_line_fixed(&line, "moved", 4, t->poses.moved);
+    ted4_json_line_put(&line, "refined", refined ? "true" : "false");
+    return put_line(l, &line, why, why_size);
 }
 
 int ted4_run_log_close(ted4_run_log *l, char *why, size_t why_size)

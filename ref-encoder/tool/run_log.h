@@ -42,7 +42,8 @@ void ted4_run_log_rewind(ted4_run_log *l, const ted4_trainer *t);
  * 0, or -1 with why filled; a file that is not a log is left unchanged. */
 int ted4_run_log_cut(ted4_run_log *l, const ted4_trainer *t, char *why, size_t why_size);
 
-/* Writes one line about the current step. Call it right after a tick or skip. The members are:
+/* Writes one line about the current step. Call it right after a tick or skip. Numbers that are not
+ * finite are null. The members are:
  *   step stage             number of steps done; stage as in ted4_run_log_stage
  *   lambda                 of this run, or of this trial of --target-size
  *   loss l1 ssim           running means over about 100 steps

@@ -203,7 +203,7 @@ static void poison(int good)
 static void kill_after_rollback(void)
 {
     const pid_t child = start("-o out/x.ted4 --checkpoint out/c --resume --log out/l", 0);
-    char text[MOST_LOG] = "";
+    char text[MOST_LOG] = "", part[64];
 
     for (int i = 0; i < 60000 && strstr(text, "\"step\":500") == NULL; i++) {
         pause_us(1000);
@@ -213,6 +213,10 @@ static void kill_after_rollback(void)
     kill(child, SIGKILL);
     assert_int_equal(finish(child), 1000 + SIGKILL);
     assert_non_null(strstr(text, "\"step\":500"));
+    /* It may have been about to write a checkpoint. */
+    snprintf(part, sizeof part, "out/c.%ld.part", (long)child);
+    if (is_there(part))
+        gone(part);
 }
 
 /* The log records what the monitor does. */
@@ -324,6 +328,68 @@ static void test_thrown_away(void **state)
     tiny_free(&scene);
 }
 
+/* Fills every number of a line that can be so with x. */
+static void fill(ted4_run_log *l, ted4_trainer *t, double x)
+{
+    ted4_progress *p = &t->progress;
+
+    p->loss = p->l1 = p->ssim = p->splats = p->splat_pixels = x;
+    l->left = x;
+    l->preview = (ted4_preview) { .psnr = x, .bytes = x, .positions = x, .masks = x };
+    for (int k = 0; k < TED4_TYPES; k++)
+        p->bits[k] = l->preview.type[k] = x;
+    for (int k = 0; k < TED4_TERMS; k++)
+        t->monitor.state.gradient[k].peak = x;
+}
+
+/* A training that has diverged is told as JSON, too: large numbers in full, and null for what is
+ * not finite. */
+static void test_diverged(void **state)
+{
+    static const double values[] = { 1e300, -1e300, NAN, INFINITY };
+    static const char *const names[] = { "loss", "l1", "ssim", "psnr", "splats", "bytes", "left" };
+    const ted4_train_options o = ball_options();
+    ted4_dataset d;
+    ted4_trainer t;
+    ted4_run_log l;
+    tiny_folder scene;
+    char why[256], path[600], text[MOST_LOG];
+
+    (void)state;
+    begin_test();
+    snprintf(path, sizeof path, "%s", tiny_path(&folder, "out/l"));
+    ball_load(&scene, &d, 3, 1);
+    ball_begin(&t, &o, &d, NULL);
+    for (size_t i = 0; i < sizeof values / sizeof values[0]; i++) {
+        assert_int_equal(ted4_run_log_open(&l, path, &t, 0, NULL, why, sizeof why), 0);
+        fill(&l, &t, values[i]);
+        assert_int_equal(ted4_run_log_step(&l, &t, why, sizeof why), 0);
+        t.poses.moved = values[i];
+        assert_int_equal(ted4_run_log_poses(&l, &t, why, sizeof why), 0);
+        assert_int_equal(ted4_run_log_close(&l, why, sizeof why), 0);
+        read_text("out/l", text, sizeof text);
+
+        char *const second = strchr(text, '\n') + 1;
+        json_t *line = json_loadb(text, (size_t)(second - text), JSON_DECODE_INT_AS_REAL, NULL),
+               *poses = json_loads(second, 0, NULL);
+
+        assert_non_null(line);
+        assert_non_null(poses);
+        for (size_t k = 0; k < sizeof names / sizeof names[0]; k++)
+            if (isfinite(values[i]))
+                assert_true(number(line, names[k]) == values[i]);
+            else
+                assert_true(json_is_null(json_object_get(line, names[k])));
+        assert_int_equal(json_is_null(json_object_get(poses, "moved")), !isfinite(values[i]));
+        json_decref(line);
+        json_decref(poses);
+    }
+    gone("out/l");
+    ted4_trainer_finish(&t);
+    ted4_dataset_free(&d);
+    tiny_free(&scene);
+}
+
 /* A file that is not a log is not changed. */
 static void test_wrong_log(void **state)
 {
@@ -348,6 +414,7 @@ int main(void)
         cmocka_unit_test(test_log_before_rollback),
         cmocka_unit_test(test_rollback),
         cmocka_unit_test(test_thrown_away),
+        cmocka_unit_test(test_diverged),
         cmocka_unit_test(test_wrong_log),
     };
 
