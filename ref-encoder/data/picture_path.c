@@ -87,14 +87,14 @@ int ted4_picture_find(const char *folder, const char *name, const char *part, ch
         return result != 0 ? result : -1;
     for (char *s = copy; (s = strchr(s, '\\')) != NULL;)
         *s = '/';
-    const char *tail = copy;
+    const char *const bare = strncmp(copy, "./", 2) == 0 ? copy + 2 : copy, *tail = copy;
     result = try_name(folder, tail, path);
     for (const char *slash; result == 0 && (slash = strchr(tail, '/')) != NULL;) {
         tail = slash + 1;
         if (*tail != 0 && *tail != '/')
             result = try_name(folder, tail, path);
     }
-    if (result == 0 && (tail == copy || tail == copy + 2) && *tail != 0)
+    if (result == 0 && tail == bare && *tail != 0)
         result = try_folders(folder, tail, part, path);
     free(copy);
     return result;

@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "test.h"
+#include "data/picture_path.h"
 #include "refuse.h"
 #include "tiny_scene.h"
 
@@ -145,6 +146,26 @@ static void test_names(void **state)
     tiny_free(&f);
 }
 
+/* A picture that lies in no folder may lie in images/. One that lies in a folder does not, also if
+ * the folder's name is as short as that of the present one. */
+static void test_short_folders(void **state)
+{
+    static const char *const names[] = { "p.png", "./p.png", "a/p.png", "ab/p.png", "./a/p.png" };
+    tiny_folder f = tiny_new();
+
+    (void)state;
+    tiny_picture(&f, "images/p.png", TINY_W, TINY_H, 0);
+    for (int i = 0; i < 5; i++) {
+        char *path = NULL;
+        const int found = ted4_picture_find(f.path, names[i], NULL, &path);
+
+        if (found != (i < 2))
+            fail_msg("%s: %d", names[i], found);
+        free(path);
+    }
+    tiny_free(&f);
+}
+
 /* Writes ten frames. Time of frame i: from + i * step; step < 0: no times. */
 static void write_part(const tiny_folder *f, const char *file, const char *part, const char *top,
                        double from, double step)
@@ -251,9 +272,8 @@ static void test_times(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_lenses),
-        cmocka_unit_test(test_names),
-        cmocka_unit_test(test_files),
+        cmocka_unit_test(test_lenses),        cmocka_unit_test(test_names),
+        cmocka_unit_test(test_short_folders), cmocka_unit_test(test_files),
         cmocka_unit_test(test_times),
     };
 

@@ -36,6 +36,8 @@ wrong --jpeg 1 "baseline or progressive"
 wrong --paths x "plain, ext or folder"
 wrong --split x "val, train-only or times"
 wrong --missing -1 "a whole number from 0 to 1000000"
+expect frames_of_turns 3 "ted4scene: --frames: not with --turns, where each camera has a time" \
+    "$TED4_BUILD/ted4scene" toys -o "$out/none" --turns --frames 4
 if [ ! -e "$out/none" ]; then ok nothing_made; else fail nothing_made "a folder"; fi
 
 # No file that lists nothing is made. Of Neu3D the first camera is held out, even if it is alone.

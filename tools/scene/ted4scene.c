@@ -190,6 +190,8 @@ static int fill(ted4_ray_options *o)
 
     if (o->hold > 0 && !lists)
         return complain("--hold", "goes with the layouts blender, nerfstudio and hypernerf");
+    if (o->n_frames >= 0 && o->ways.turns)
+        return complain("--frames", "not with --turns, where each camera has a time");
     if (o->width < 0) {
         o->width = d.width;
         o->height = d.height;
