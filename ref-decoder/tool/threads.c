@@ -144,11 +144,10 @@ static void *work(void *user)
     for (int stop = 0; !stop;) {
         wait_for_round(t, m, last);
 
-        const int open = enter(t);
-
-        /* No other round can begin while this one is open and a worker is inside. */
+        /* Before entering: a round that begins later, which may be the last one, is then not taken
+         * for one that was seen, and the next turn enters it. */
         last = atomic_load_explicit(&t->round, memory_order_acquire);
-        if (open) {
+        if (enter(t)) {
             wake_some(t);
             stop = t->stop;
             if (!stop)

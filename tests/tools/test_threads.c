@@ -1,5 +1,5 @@
 /* test_threads.c - tool/threads.c: every index runs exactly once, for any numbers of threads and
- * indices and however uneven the work; sleeping threads wake up.
+ * indices and however uneven the work; sleeping threads wake up, and all end with their pool.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <sched.h>
 #include <stdatomic.h>
@@ -133,12 +133,36 @@ static void test_woken(void **state)
     free(c);
 }
 
+/* Threads that come too late for the only job of their pool meet its end, sooner or later: each of
+ * them must see it, or finish waits for it forever. */
+static void test_finished(void **state)
+{
+    enum { POOLS = 500, PAUSES = 50, PAUSE = 6000 };
+    counts *c = calloc(1, sizeof *c);
+
+    (void)state;
+    alarm(60);
+    for (int k = 0; k < POOLS; k++) {
+        const struct timespec pause = { 0, k % PAUSES * PAUSE };
+        ted4_parallel p;
+
+        ted4_threads_init(&p, 2 + k % (THREADS - 1));
+        ted4_parallel_for(&p, 2, take, c);
+        nanosleep(&pause, NULL);
+        ted4_threads_finish(&p);
+    }
+    assert_int_equal(atomic_load(&c->taken[1]), POOLS);
+    alarm(0);
+    free(c);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_once),
         cmocka_unit_test(test_helped),
         cmocka_unit_test(test_woken),
+        cmocka_unit_test(test_finished),
     };
 
     return cmocka_run_group_tests_name("threads", tests, NULL, NULL);
