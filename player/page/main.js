@@ -27,7 +27,8 @@ function explain(name, error) {
 
 const wasm = embedded.wasm ?? new URL("ted4.wasm", document.baseURI).href;
 // Drawing and sorting take a core of their own, but not all the time.
-const workers = Array.from({ length: Math.min(navigator.hardwareConcurrency, 2) }, startWorker);
+const cores = navigator.hardwareConcurrency ?? 1; // some browsers do not say
+const workers = Array.from({ length: Math.min(cores, 2) }, startWorker);
 const player = new Player(at("picture"), workers, wasm, (error) => {
   if (error === null) clearMessage("time");
   else showMessage(explain(player.file.name, error), "time");

@@ -50,7 +50,12 @@ export class Player {
   }
 
   async #startView() {
-    this.#view = await View.create(this.#canvas);
+    try {
+      this.#view = await View.create(this.#canvas);
+    } catch (error) {
+      this.#started = null; // so that the next file tries again
+      throw error;
+    }
     this.#view.onFrame((now) => this.#tick(now), () => { this.statistics.drawn++; });
   }
 
@@ -75,11 +80,17 @@ export class Player {
     const bytes = new Uint8Array(buffer), decoding = this.#evaluators.open(bytes);
     // Starting to draw takes this thread as long as decoding takes the worker.
     this.#started ??= this.#startView();
-    const [{ scene, use }] = await Promise.all([decoding, this.#started]);
-    const chunks = chunksOf(bytes), cameras = camerasOf(chunks), up = cameras.up ?? UP;
-    const isSeen = cameras.cameras.length + cameras.path.length > 0;
-    const start = isSeen ? null : startCamera(await scene.gaussians(0, 1), up);
-    return { bytes, scene, use, chunks, cameras, up, start };
+    try {
+      const [{ scene, use }] = await Promise.all([decoding, this.#started]);
+      const chunks = chunksOf(bytes), cameras = camerasOf(chunks), up = cameras.up ?? UP;
+      const isSeen = cameras.cameras.length + cameras.path.length > 0;
+      const start = isSeen ? null : startCamera(await scene.gaussians(0, 1), up);
+      return { bytes, scene, use, chunks, cameras, up, start };
+    } catch (error) {
+      // Nobody will have the scene, which may be decoded only after the drawing has failed.
+      decoding.then(({ scene }) => scene.close()).catch(() => {});
+      throw error;
+    }
   }
 
   #begin({ bytes, scene, use, chunks, cameras, up, start }, asked, fragment) {

@@ -102,6 +102,11 @@ export class Page {
       { width, height, deviceScaleFactor: ratio, mobile: false });
   }
 
+  // Runs a script in every document that is opened from then on, before those of its own.
+  before(source) {
+    return this.#send("Page.addScriptToEvaluateOnNewDocument", { source });
+  }
+
   async open(url) {
     const loaded = new Promise((resolve) => { this.#loaded = resolve; });
     await this.#send("Page.navigate", { url });

@@ -134,3 +134,48 @@ test("the time that the address says when the file is there counts", async () =>
   assert.equal(await page.evaluate("ted4Player.clock.position"), 7);
   await page.close();
 });
+
+// In the page: a player of its own, opened twice with a file without cameras. The answers are those
+// of its worker, and the canvas gives no context to the first try. Errors of both tries, and the
+// types of all messages to the worker.
+const opens = (answers) => `(async () => {
+  const answers = ${JSON.stringify(answers)}, types = [], errors = [];
+  const worker = { postMessage({ call, type }) {
+    types.push(type);
+    setTimeout(() => worker.onmessage({ data: { call, ...answers[type] } }));
+  } };
+  const canvas = document.createElement("canvas");
+  const player = new ted4Player.constructor(canvas, [worker], "ted4.wasm", () => {});
+  canvas.getContext = () => null;
+  for (let i = 0; i < 2; i++) {
+    await player.open(new ArrayBuffer(12), "file").catch((e) => errors.push(e.message));
+    await new Promise((resolve) => { setTimeout(resolve, 100); });
+    delete canvas.getContext;
+  }
+  return { errors, types };
+})()`;
+
+test("a decoded file that cannot be shown is closed, and the next one starts the drawing anew",
+  async () => {
+    const page = await opened();
+    await page.until("globalThis.ted4Player");
+    const { errors, types } = await page.evaluate(opens({
+      load: {}, open: { value: { info: {} } }, gaussians: { error: { message: "no memory" } },
+      close: {},
+    }));
+    assert.equal(errors.length, 2);
+    assert.match(errors[0], /graphics device/);
+    assert.equal(errors[1], "no memory");
+    assert.deepEqual(types, ["load", "open", "close", "open", "gaussians", "close"]);
+    await page.close();
+  });
+
+test("on a machine that does not say how many cores it has, one worker evaluates", async () => {
+  const page = await browser.page(CAMERA.width, CAMERA.height);
+  await page.before(
+    `Object.defineProperty(navigator, "hardwareConcurrency", { value: undefined })`);
+  await page.open(`${server.origin}/?file=${NAME}`);
+  await page.until("globalThis.ted4Player?.isSettled");
+  assert.equal(await page.evaluate("ted4Player.evaluators"), 1);
+  await page.close();
+});
