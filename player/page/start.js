@@ -16,7 +16,7 @@ function middle(values) {
 }
 
 function samples(g) {
-  const step = Math.max(1, Math.floor(g.n / SAMPLES));
+  const step = Math.max(1, Math.ceil(g.n / SAMPLES));
   const indices = [];
   for (let i = 0; i < g.n; i += step) if (g.opacity[i] > VISIBLE) indices.push(i);
   return indices.length > 0 ? indices : [0];

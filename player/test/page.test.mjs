@@ -6,6 +6,7 @@ import { centreOf, fitted, forward, lookingAt, orbited } from "../page/camera.js
 import { bytesByType, camerasOf, chunksOf, metaOf } from "../page/chunks.js";
 import { Clock } from "../page/clock.js";
 import { cameraOnPath, placeOnPath } from "../page/path.js";
+import { startCamera } from "../page/start.js";
 
 const IDENTITY = [1, 0, 0, 0, 1, 0, 0, 0, 1];
 
@@ -206,4 +207,19 @@ test("a camera on a path is at its keys, and between them on a smooth way", () =
   near(centreOf(cameraOnPath(path, 0.5)), [2.8125, -2.8125, 1]);
   assert.deepEqual([0.5, 1.5, 2].map((place) => cameraOnPath(path, place).fx), [3, 4.5, 6]);
   near(cameraOnPath(path.slice(0, 1), 0).R, path[0].R);
+});
+
+test("of many Gaussians at most 4096 say where a viewer begins", () => {
+  for (const n of [1, 4096, 6000, 8191, 8193]) {
+    const looked = new Set(), values = new Float32Array(n).map((_, i) => i / n);
+    const opacity = new Proxy(new Float32Array(n).fill(1), {
+      get(array, i) {
+        looked.add(i);
+        return array[i];
+      },
+    });
+    const { distance } = startCamera({ n, opacity, mean: [values, values, values] }, [0, -1, 0]);
+    assert.ok(looked.size <= 4096 && looked.size > Math.min(n, 4096) / 2, `${looked.size}`);
+    assert.ok(n === 1 || Math.abs(distance - 2.2 * 0.4) < 0.01, `${distance}`);
+  }
 });
