@@ -51,7 +51,7 @@ function described(e) {
   return { message, verdict, id, offset, section, text };
 }
 
-self.onmessage = async ({ data }) => {
+async function answer(data) {
   try {
     const value = await actions[data.type](data);
     self.postMessage({ call: data.call, value },
@@ -59,4 +59,10 @@ self.onmessage = async ({ data }) => {
   } catch (e) {
     self.postMessage({ call: data.call, error: described(e) });
   }
+}
+
+// Loading takes several turns of the worker; calls that come in the meantime wait for it.
+let answered = Promise.resolve();
+self.onmessage = ({ data }) => {
+  answered = answered.then(() => answer(data));
 };

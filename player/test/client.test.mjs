@@ -70,6 +70,15 @@ test("every call gives a promise, which a call that is none rejects", () =>
     await assert.rejects(client.load(() => {}), { name: "DataCloneError" });
   }));
 
+test("calls are answered in order, also those that come while the module is loaded", async () => {
+  const client = new Ted4Client(new BrowserWorker()), answered = [];
+  const noted = (name) => () => answered.push(name);
+  const calls = [client.load(wasm).then(noted("load")), client.open(copy()).then(noted("open")),
+    client.load(wasm).then(noted("again"))];
+  await Promise.all(calls).finally(() => client.terminate());
+  assert.deepEqual(answered, ["load", "open", "again"]);
+});
+
 test("bytes of a Buffer are copied, and those of an ArrayBuffer are gone afterwards", () =>
   withClient(async (client) => {
     const pool = Buffer.concat([Buffer.alloc(8), bytes]), part = pool.subarray(8);
