@@ -1,4 +1,4 @@
-/* png_file.h - writes rendered views as PNG (annex I, informative). It needs libpng, so no
+/* png_file.h - rendered views as PNG files in memory (annex I, informative). It needs libpng, so no
  * normative file includes it.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_PNG_FILE_H
@@ -7,14 +7,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Writes rgb, [height][width][3] sRGB bytes, to a temporary file beside path, which is then renamed
- * to path, so that path never holds an incomplete image. Returns 0, or -1 with a reason in why,
- * which does not name the file (truncated to why_size bytes). */
-int ted4_png_write(const char *path, int width, int height, const uint8_t *rgb, char *why,
-                   size_t why_size);
-
-/* Encodes the same pixels in memory. Returns the PNG file of *size bytes, for the caller to free(),
- * or NULL with a reason in why. */
+/* Encodes rgb, [height][width][3] sRGB bytes. Returns the PNG file of *size bytes, for the caller
+ * to free(), or NULL with a reason in why (truncated to why_size bytes). */
 uint8_t *ted4_png_encode(int width, int height, const uint8_t *rgb, size_t *size, char *why,
                          size_t why_size);
 

@@ -14,15 +14,20 @@
 
 #include "leftovers.h"
 
-/* Makes the temporary name for path. Returns 0, or -1 with errno set if it is too long. */
-static int name_temporary(char out[TED4_PATH_SIZE], const char *path)
+/* n: what snprintf gave for a buffer of TED4_PATH_SIZE. Returns 0, or -1 with errno set if it is
+ * too small. */
+static int fits(int n)
 {
-    const int n = snprintf(out, TED4_PATH_SIZE, "%s.%ld.part", path, (long)getpid());
-
-    if (n > 0 && n < TED4_PATH_SIZE)
+    if (n >= 0 && n < TED4_PATH_SIZE)
         return 0;
     errno = ENAMETOOLONG;
     return -1;
+}
+
+/* Makes the temporary name for path. Returns 0, or -1 with errno set if it is too long. */
+static int name_temporary(char out[TED4_PATH_SIZE], const char *path)
+{
+    return fits(snprintf(out, TED4_PATH_SIZE, "%s.%ld.part", path, (long)getpid()));
 }
 
 /* Finds the place of a file: where links at path lead if there is something, otherwise path.
@@ -33,10 +38,7 @@ static int find_place(char place[TED4_PATH_SIZE], const char *path)
     const int n = snprintf(place, TED4_PATH_SIZE, "%s", real != NULL ? real : path);
 
     free(real);
-    if (n >= 0 && n < TED4_PATH_SIZE)
-        return 0;
-    errno = ENAMETOOLONG;
-    return -1;
+    return fits(n);
 }
 
 /* Creates a file that will replace the one at place, with the same mode. Returns NULL with errno
@@ -108,6 +110,16 @@ int ted4_output_close(ted4_output *o)
     return -1;
 }
 
+int ted4_output_write(const char *path, const void *data, size_t size)
+{
+    ted4_output o;
+
+    if (ted4_output_open(&o, path) != 0)
+        return -1;
+    fwrite(data, 1, size, o.file);
+    return ted4_output_close(&o);
+}
+
 int ted4_output_is_stdout(const char *path)
 {
     return strcmp(path, "-") == 0;
@@ -167,5 +179,5 @@ int ted4_pattern_make(char out[TED4_PATH_SIZE], const char *pattern, uint32_t nu
     } else {
         n = snprintf(out, TED4_PATH_SIZE, "%s", pattern);
     }
-    return n >= 0 && n < TED4_PATH_SIZE ? 0 : -1;
+    return fits(n);
 }

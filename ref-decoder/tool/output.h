@@ -26,6 +26,8 @@ int ted4_output_open(ted4_output *o, const char *path);
 int ted4_output_close(ted4_output *o);
 /* Closes and removes the temporary file. errno is preserved. */
 void ted4_output_cancel(ted4_output *o);
+/* All of a file at once. Returns 0, or -1 with errno set. */
+int ted4_output_write(const char *path, const void *data, size_t size);
 
 /* Returns 1 if path is "-", which stands for standard output. */
 int ted4_output_is_stdout(const char *path);
@@ -36,8 +38,8 @@ int ted4_has_suffix(const char *path, const char *suffix);
 /* A pattern is a file name with at most one %d, %Nd or %0Nd (N up to 9) and no other percent sign.
  * Returns the number of conversions (0 or 1), or -1 if the text is not a pattern. */
 int ted4_pattern_count(const char *pattern);
-/* Replaces the conversion by number. The pattern must be valid. Returns 0, or -1 if the name is too
- * long. */
+/* Replaces the conversion by number. The pattern must be valid. Returns 0, or -1 with errno
+ * set if the name is too long. */
 int ted4_pattern_make(char out[TED4_PATH_SIZE], const char *pattern, uint32_t number);
 
 #endif

@@ -9,7 +9,7 @@
 #include "cli.h"
 #include "json_string.h"
 #include "output.h"
-#include "render/png_file.h"
+#include "picture_out.h"
 #include "render/view.h"
 #include "video_out.h"
 
@@ -26,7 +26,7 @@ static int write_picture(const ted4_session *s, const ted4_view *v, const uint8_
         return ted4_session_refused(s->set->render, "name too long");
     if (video != NULL)
         return ted4_video_out_write(video, rgb) == 0 ? TED4_EXIT_FINE : TED4_EXIT_TOOL;
-    return ted4_png_write(path, v->width, v->height, rgb, why, sizeof why) == 0
+    return ted4_picture_write(path, v->width, v->height, rgb, why, sizeof why) == 0
                ? TED4_EXIT_FINE
                : ted4_session_refused(path, why);
 }

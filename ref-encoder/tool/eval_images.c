@@ -9,7 +9,7 @@
 #include <sys/stat.h>
 
 #include "moving_pixels.h"
-#include "render/png_file.h"
+#include "tool/picture_out.h"
 #include "sheet.h"
 #include "tool/output.h"
 
@@ -68,7 +68,7 @@ static int write_one(const ted4_eval_images *to, const char *kind, const ted4_ca
     *strrchr(path, '/') = '\0';
     if (make_folder(path, m) != 0 || name_one(path, to, kind, m) != 0)
         return -1;
-    return ted4_png_write(path, c->width, c->height, rgb, why, sizeof why) == 0
+    return ted4_picture_write(path, c->width, c->height, rgb, why, sizeof why) == 0
                ? 0
                : failed(m, path, why);
 }

@@ -1,5 +1,5 @@
 /* eval_images.h - the folders of pictures that ted4eval --images writes. Depends on data/dataset.h,
- * render/png_file.h, moving_pixels.h.
+ * tool/picture_out.h, moving_pixels.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_EVAL_IMAGES_H
 #define TED4_EVAL_IMAGES_H

@@ -40,14 +40,9 @@ int ted4_file_writable(const char *path, int force, const char *instead, char *w
 
 int ted4_file_write(const char *path, const void *data, size_t size, char *why, size_t why_size)
 {
-    ted4_output o;
-    int bad = ted4_output_open(&o, path) != 0;
+    const int result = ted4_output_write(path, data, size);
 
-    if (!bad) {
-        fwrite(data, 1, size, o.file);
-        bad = ted4_output_close(&o) != 0;
-    }
-    if (bad)
+    if (result != 0)
         snprintf(why, why_size, "%s: %s", path, strerror(errno));
-    return bad ? -1 : 0;
+    return result;
 }

@@ -18,7 +18,7 @@
 #include "eval_result.h"
 #include "fit_colours.h"
 #include "moving_pixels.h"
-#include "render/png_file.h"
+#include "tool/picture_out.h"
 #include "render/view.h"
 #include "sheet.h"
 #include "ted4.h"
@@ -550,8 +550,8 @@ static int evaluate(session *s)
             &teller, &(ted4_facts) { .kind = TED4_TELL_DRAWING, .step = s->sum.views, .total = n });
     }
     if (code == TED4_EXIT_FINE && set->sheet != NULL &&
-        ted4_png_write(set->sheet, s->sheet.width * TED4_SHEET_COLUMNS,
-                       s->sheet.height * s->sheet.rows, s->sheet.rgb, why, sizeof why) != 0)
+        ted4_picture_write(set->sheet, s->sheet.width * TED4_SHEET_COLUMNS,
+                           s->sheet.height * s->sheet.rows, s->sheet.rgb, why, sizeof why) != 0)
         code = failed(set->sheet, why);
     if (code == TED4_EXIT_FINE)
         code = refuse_pair(s, ted4_belongs_pictures(&s->squares, why, sizeof why), why);

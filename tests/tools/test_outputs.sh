@@ -35,17 +35,17 @@ full encode "$bin/ted4enc" "$scene" -o b.ted4 $small
 full checkpoint "$bin/ted4enc" "$scene" -o b.ted4 $small --checkpoint c
 full stage1 "$bin/ted4enc" "$scene" -o b.ted4 $small --stage1 c
 full transcode "$bin/ted4enc" --transcode "$out/a.ted4" -o b.ted4
+full render "$bin/ted4dec" "$out/a.ted4" --render b.png --orbit 1
+full sheet "$bin/ted4eval" "$out/a.ted4" "$scene" --sheet b.png
 echo '[{"t":[0,1],"cam":[0,0,0]}]' >"$out/q.json"
-# Their messages are those of libpng and of the scene maker; files before it stay.
-for name in render sheet scene contract; do
+# Files before the one that does not fit stay.
+for name in images scene contract; do
     case $name in
-    render) set -- "$bin/ted4dec" "$out/a.ted4" --render b.png --camera file --time 0 ;;
-    sheet) set -- "$bin/ted4eval" "$out/a.ted4" "$scene" --sheet b.png ;;
+    images) set -- "$bin/ted4eval" "$out/a.ted4" "$scene" --images b ;;
     scene) set -- "$bin/ted4scene" pop -o b --size 32x24 --frames 2 -j 1 ;;
     contract) set -- "$bin/ted4dec" --ted4-run "$out/a.ted4" --tiers T5 --queries "$out/q.json" \
         --dump . ;;
     esac
-    [ $name = render ] && set -- "$bin/ted4dec" "$out/a.ted4" --render b.png --orbit 1
     expect "full_$name" 3 ": " sh -c 'cd "$0" && ulimit -f 2 && "$@"' "$out/at" "$@"
     find "$out/at" -name '*.tmp' -o -name '*.part' >"$out/said"
     [ -s "$out/said" ] && fail "left_$name" "$(cat "$out/said")" || ok "left_$name"
@@ -86,6 +86,17 @@ equal checkpoint_left "$(ls -A "$out/at" | grep 'part$')" ""
 equal export_link "$(readlink "$out/at/x.raw") $(mode "$out/at/m.raw")" "m.raw -rw-------"
 expect dangling_export 3 "x.ply: exists; -f overwrites" "$bin/ted4dec" "$out/a.ted4" \
     -o "$out/at/x.ply" --time 0
+for name in render sheet; do
+    case $name in
+    render) set -- "$bin/ted4dec" "$out/a.ted4" --render l.png --orbit 1 -f -q ;;
+    sheet) set -- "$bin/ted4eval" "$out/a.ted4" "$scene" --sheet l.png -f -q ;;
+    esac
+    (cd "$out/at" && ln -s m.png l.png && : >m.png && chmod 600 m.png && umask 022 && "$@" \
+        >/dev/null)
+    equal link_$name "$(readlink "$out/at/l.png") $(mode "$out/at/m.png")" "m.png -rw-------"
+    [ -s "$out/at/m.png" ] && ok "written_$name" || fail "written_$name" "empty"
+    rm -f "$out/at/l.png" "$out/at/m.png"
+done
 ln -s elsewhere/x.ted4 "$out/at/x.ted4"
 expect dangling_edit 3 "x.ted4: exists; -f overwrites" "$bin/ted4edit" "$out/a.ted4" \
     -o "$out/at/x.ted4" --title x
@@ -102,6 +113,21 @@ mkdir -p "$out/images/error"
 expect images 3 "00001.png: exists; -f overwrites" "$bin/ted4eval" "$out/a.ted4" "$scene" --images \
     "$out/images"
 equal images_first "$(find "$out/images" -name '*.png' | wc -l | tr -d ' ')" 1
+
+# ---- a signal while a large picture is written: it is whole, or gone ----
+cat >"$out/large.json" <<E
+[{"width":3000,"height":3000,"fx":3000,"fy":3000,"cx":1500,"cy":1500,
+  "R":[1,0,0,0,1,0,0,0,1],"t":[0,0,5],"time":0}]
+E
+mkdir "$out/ended"
+"$bin/ted4dec" "$out/a.ted4" --render "$out/ended/x.png" --camera "$out/large.json" -q -j 1 &
+while [ -z "$(ls -A "$out/ended")" ] && kill -0 $! 2>/dev/null; do :; done
+{ kill $!; wait $!; } 2>/dev/null
+equal ended_render "$(ls -A "$out/ended" | grep -v '^x\.png$')" ""
+
+# ---- a name that is too long ----
+long=$(awk 'BEGIN { for (i = 0; i < 4200; i++) printf "n" }')
+expect long_export 3 "File name too long" "$bin/ted4dec" "$out/a.ted4" -o "$long%d.ply" -f -q
 
 # ---- standard output ----
 if [ -e /dev/full ]; then
