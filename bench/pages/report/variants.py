@@ -4,7 +4,7 @@ from ..compare import (Change, near_words, nearest, psnr_change, rate_change,
                        within_seeds)
 from ..dots import Dots
 from ..plot import Plot, panels
-from ..rows import own_options
+from ..rows import mark, own_options
 from ..svg import COLOURS, MARKERS
 from ..words import cells, signed
 from .rate import KB
@@ -34,7 +34,7 @@ PAPER = {
 def section(report):
     page, runs = report.tables, report.runs
     page.heading("One thing changed")
-    explain(page)
+    explain(page, runs)
     for scene in runs.scenes:
         if variants_of(runs, scene):
             table(report, scene)
@@ -42,7 +42,7 @@ def section(report):
     overview(report)
 
 
-def explain(page):
+def explain(page, runs):
     page.prose("""Each variant is trained by itself and measured on its own file. *Rate at equal
         PSNR* and *PSNR at equal bytes* are against the curve of the whole method at four λ, by
         interpolation on straight lines between its points, logarithm of bytes over PSNR; "-" stands
@@ -59,12 +59,19 @@ def explain(page):
     page.prose("""*factorised_flat* is one Gaussian per component for all anchors, and *factorised*
         is the same with the autoregression kept. *inr* has layers as wide as those of the whole
         method's F_deform, *inr_paper* as many and as wide as the paper's. *hardmask* pushes the
-        temporal mask ten times as hard, *moremask* the offset mask three times. *recipe* leaves out
-        what the paper does not have: multi-view seeding (sprouts), seeded transients and the probe.
+        temporal mask ten times as hard, *moremask* gives the offset mask more weight than the
+        default has. *recipe* leaves out what the paper does not have: multi-view seeding (sprouts),
+        seeded transients and the probe.
         Only the rows *_auto* choose their capacity; they are compared with the whole method with
         that choice, *whole_auto*, and the rows *factorised_..._moremask* with *moremask*.
-        *factorised_long* and *whole_long* are trained for 18,000 and
-        10,000; the other rows are trained for a third of them.""")
+        *factorised_long* and *whole_long* have the steps of preset fast"""
+        + (" (those marked † as it was)" if long_mark(runs) else "")
+        + "; those of the other rows are among the [options](#commands) behind them.")
+
+
+def long_mark(runs):
+    """Of rows with the steps of a preset: earlier sources may have given it others."""
+    return mark([run for run in runs.all if run.variant.endswith("_long")])
 
 
 def variants_of(runs, scene):
