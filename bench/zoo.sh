@@ -52,7 +52,7 @@ measure() {
     "$programs/zoo_masks" "$folder" "$out.pictures" <"$out.views" >"$out.masks.json" || return 1
     rm -rf "$out.pictures"
     times=$(python3 -m bench.pages times "$out.jsonl") || return 1
-    told=$(python3 -m bench.pages foretold "$(value train_s "$out.json")" "$out.jsonl") || return 1
+    told=$(python3 -m bench.pages predicted "$(value train_s "$out.json")" "$out.jsonl") || return 1
     warnings=$(grep -c 'warning:' "$out.err")
     row=$tag,$key,$scene,$groups,$options,fine,0
     row=$row,$(known psnr "$out.eval.json"),$(known psnr "$out.train.json")

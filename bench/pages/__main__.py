@@ -5,7 +5,7 @@
         GROUPS|TAG|SCENE|WHERE|VARIANT|PLACE|LAMBDA|KEEP|STAGE1|OPTIONS
     python3 -m bench.pages times LOG...        training_times of logs.py, divided by commas
     python3 -m bench.pages thin MOST LOG...    thinned
-    python3 -m bench.pages foretold SECONDS LOG
+    python3 -m bench.pages predicted SECONDS LOG
     python3 -m bench.pages budget FILE         bytes by syntax element, divided by commas
 
 STATES: a file of lines "STATE TAG", which the script that makes the rows prints with --list; that
@@ -90,8 +90,8 @@ def thin_lines(most, *paths):
     return logs.thinned(paths, int(most))
 
 
-def foretold_lines(seconds, path):
-    return [",".join(logs.foretold(path, float(seconds)))]
+def predicted_lines(seconds, path):
+    return [",".join(logs.predicted(path, float(seconds)))]
 
 
 def budget_lines(path):
@@ -99,7 +99,7 @@ def budget_lines(path):
 
 
 ANSWERS = {"runs": wanted_lines, "times": times_lines, "thin": thin_lines,
-           "foretold": foretold_lines, "budget": budget_lines}
+           "predicted": predicted_lines, "budget": budget_lines}
 
 
 def main(name="", *arguments):

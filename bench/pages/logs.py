@@ -54,10 +54,10 @@ def thinned(paths, most):
     return found
 
 
-def foretold(path, whole):
-    """What the log of a training of so many seconds foretold: the smallest and the largest estimate
-    of its time, from a tenth of it on, as parts of that time; and the last PSNR and bytes. As text;
-    "" where it is not known."""
+def predicted(path, whole):
+    """What the log of a training of so many seconds predicted: the smallest and the largest
+    estimate of its time, from a tenth of it on, as parts of that time; and the last PSNR and bytes.
+    As text; "" where it is not known."""
     parts, psnr, size = [], "", ""
     for line in read_lines(path, number=str):
         if "left" not in line:

@@ -67,7 +67,7 @@ def write(runs, charts, results, _):
     tables.out_section(lab)
     beside.points_section(lab)
     beside.parts_section(lab)
-    beside.twins_section(lab)
+    beside.colours_section(lab)
     tables.numbers_section(lab)
     tables.strip_section(lab)
     tables.command_section(lab)

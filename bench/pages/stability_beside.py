@@ -20,25 +20,26 @@ def points_section(lab):
         pictures / worst of all, as means over seeds.""")
     page.table("scene", "on surfaces", "as structure from motion", "difference of the mean")
     for scene in wanted:
-        twin = lab.cell(scene.removesuffix("_sfm"), "whole")
+        plain = lab.cell(scene.removesuffix("_sfm"), "whole")
         cell = lab.cell(scene, "whole")
-        if twin.mean("psnr") is None or cell.mean("psnr") is None:
-            page.row_missing(twin.scene)
+        if plain.mean("psnr") is None or cell.mean("psnr") is None:
+            page.row_missing(plain.scene)
             continue
-        page.row(twin.scene, *(fixed(one.mean("psnr"), 2) + " / " + fixed(one.mean("worst"), 2)
-                               + mark(one.wanted) for one in (twin, cell)),
-                 signed(cell.mean("psnr") - twin.mean("psnr"), 2))
+        page.row(plain.scene, *(fixed(one.mean("psnr"), 2) + " / " + fixed(one.mean("worst"), 2)
+                                + mark(one.wanted) for one in (plain, cell)),
+                 signed(cell.mean("psnr") - plain.mean("psnr"), 2))
 
 
-def paired(cell, twin):
+def paired(cell, other_cell):
     """The runs of two cells that have the same seed and ended with a file: [(one, other)]."""
-    pairs = [(run, other) for run in cell.there for other in twin.there if run.place == other.place]
+    pairs = [(run, other) for run in cell.there for other in other_cell.there
+             if run.place == other.place]
     return [pair for pair in pairs if all(run.text("status") == "fine" for run in pair)]
 
 
-def difference_cell(cell, twin):
-    """How much better a cell is than its twin, and how much larger, over the seeds of both."""
-    pairs = paired(cell, twin)
+def difference_cell(cell, other_cell):
+    """How much better a cell is than another, and how much larger, over the seeds of both."""
+    pairs = paired(cell, other_cell)
     if not pairs:
         return "-"
     psnr = sum(a.number("psnr") - b.number("psnr") for a, b in pairs) / len(pairs)
@@ -66,7 +67,7 @@ def parts_section(lab):
                  *(difference_cell(lab.cell(scene, variant), whole) for variant in variants))
 
 
-def twins_section(lab):
+def colours_section(lab):
     """Scenes of the groups colours and turns, with all their variants."""
     page, runs = lab.page, lab.runs
     wanted = [lab.cell(scene, variant) for scene in runs.scenes for variant in runs.variants

@@ -69,13 +69,13 @@ def numbers_section(lab):
     page = lab.page
     page.heading("What the whole method's runs measured")
     page.prose("""All numbers are means over seeds, but for gradients and rollbacks, which are the
-        most of them. *Dead* is the share of Gaussians whose opacity is 0 at all times. *Ends* are
-        shares of symbols, steps, contexts, sigma indices and activation widths at the ends of their
-        ranges. *Loss* is the distortion at the first line of the log and at the last, as running
-        means over about 100 steps. *Clamped* counts values of anchors at an end of their range when
-        training ended. *Not finite* counts pictures and times that the decoder refused, Gaussians
-        that training left out, and lines of the log. *Peak* is the largest norm of a gradient as a
-        multiple of its term's usual one.""")
+        most of them, and *not finite*, which is their sum. *Dead* is the share of Gaussians whose
+        opacity is 0 at all times. *Ends* are shares of symbols, steps, contexts, sigma indices and
+        activation widths at the ends of their ranges. *Loss* is the distortion at the first line of
+        the log and at the last, as running means over about 100 steps. *Clamped* counts values of
+        anchors at an end of their range when training ended. *Not finite* counts pictures and times
+        that the decoder refused, Gaussians that training left out, and lines of the log. *Peak* is
+        the largest norm of a gradient as a multiple of its term's usual one.""")
     page.table("scene", "bytes", "anchors", "moving", "dead", "escapes", "ends: symbols", "steps",
                "contexts", "sigma", "widths", "clamped", "not finite", "loss", "largest gradient",
                "peak", "rollbacks", "training s of CPU")

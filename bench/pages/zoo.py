@@ -1,4 +1,4 @@
-"""bench/zoo.md: scenes as other people write them, each against a friendly twin.
+"""bench/zoo.md: scenes as other people write them, each against a reference scene.
 SPDX-License-Identifier: BSD-2-Clause"""
 import os
 import re
@@ -6,22 +6,23 @@ import re
 from .bars import Bars
 from .notes import read_notes
 from .rows import made_with, mark
-from .words import Page, cells, fixed, signed
+from .words import Page, cells, fixed, percent, signed
 
-MOST_BELOW = 1      # dB below the twin
+MOST_BELOW = 1      # dB below the reference scene
 LEAST_MOVING = 22   # dB inside the masks of what moves, where cameras take turns
 LEAST_CASES = 24
-# What is foretold: parts of the time, decibels, parts of the bytes.
+# What is predicted: parts of the time, decibels, parts of the bytes.
 MOST_TIME, MOST_PSNR, MOST_BYTES = 0.25, 0.5, 0.05
 
 
 class Case:
-    """A scene of the table: its run, and that of its friendly twin (None without)."""
+    """A scene of the table: its run, and that of its reference scene (None without)."""
 
-    def __init__(self, runs, scene, twins):
-        self.scene, self.twin = scene, twins.get(scene, "")
+    def __init__(self, runs, scene, references):
+        self.scene, self.reference = scene, references.get(scene, "")
         self.run = runs.first(scene, runs.variants[0])
-        self.twin_run = runs.first(self.twin, runs.variants[0]) if self.twin else None
+        self.reference_run = (runs.first(self.reference, runs.variants[0]) if self.reference
+                              else None)
 
     def is_fine(self):
         return self.run.text("status") == "fine"
@@ -29,17 +30,19 @@ class Case:
     def takes_turns(self):
         return "+turns" in re.findall(r"\+[^+=]*", self.run.where)
 
-    def is_gone(self):
-        """Is what moves not shown, although cameras take turns?"""
-        return self.takes_turns() and self.run.count("moving_psnr") < LEAST_MOVING
+    def is_shown(self):
+        """Whether what moves is shown where cameras take turns; None where they do not, or the row
+        does not tell."""
+        moving = self.run.number("moving_psnr")
+        return moving >= LEAST_MOVING if self.takes_turns() and moving is not None else None
 
     def above(self):
-        """Decibels above the twin; None where one of the two is not known."""
-        both = (self.run, self.twin_run)
-        if self.twin_run is None or not all(run.text("status") == "fine" and run.text("psnr")
+        """Decibels above the reference scene; None where one of the two is not known."""
+        both = (self.run, self.reference_run)
+        if self.reference_run is None or not all(run.text("status") == "fine" and run.text("psnr")
                                             for run in both):
             return None
-        return self.run.number("psnr") - self.twin_run.number("psnr")
+        return self.run.number("psnr") - self.reference_run.number("psnr")
 
     def is_below(self):
         return self.above() is not None and self.above() < -MOST_BELOW
@@ -49,8 +52,8 @@ class Case:
         if not self.is_fine():
             return " ".join((self.run.text("status"), self.run.text("exit") + ":",
                              self.run.text("why")))
-        why = (["below its twin"] if self.is_below() else [])
-        return ", ".join(why + (["what moves"] if self.is_gone() else []))
+        why = (["below its reference"] if self.is_below() else [])
+        return ", ".join(why + (["what moves"] if self.is_shown() is False else []))
 
     def commands(self):
         """Of ted4scene, and the options of ted4enc that not all runs have alike."""
@@ -60,17 +63,21 @@ class Case:
         return text + (options and f", `{options}`")
 
 
-class Foretold:
-    """How far off the log's last lines were, at most. The run has the machine for itself."""
+class Predicted:
+    """How far off the log's last lines were, at most; None where the row does not tell. The run has
+    the machine for itself."""
 
     def __init__(self, run):
-        self.time = max(1 - run.count("estimate_low"), run.count("estimate_high") - 1)
-        self.psnr = abs(run.count("last_psnr") - run.count("psnr"))
-        self.bytes = abs(run.count("last_bytes") / run.count("bytes") - 1)
+        low, high, psnr, size = (run.number(name) for name in (
+            "estimate_low", "estimate_high", "last_psnr", "last_bytes"))
+        self.time = None if low is None or high is None else max(1 - low, high - 1)
+        self.psnr = None if psnr is None else abs(psnr - run.count("psnr"))
+        self.bytes = None if size is None else abs(size / run.count("bytes") - 1)
 
 
-def read_twins(table):
-    """{case: its twin, "" without}, from the lines "case NAME TWIN WHERE ..." of the table."""
+def read_references(table):
+    """{case: its reference scene, "" without}, from the lines "case NAME REFERENCE WHERE ..." of
+    the table."""
     with open(table, encoding="utf-8") as file:
         lines = [line.split() for line in file]
     return {word[1]: "" if word[2] == "-" else word[2] for word in lines
@@ -80,14 +87,15 @@ def read_twins(table):
 class Zoo:
     def __init__(self, runs, table, notes):
         self.runs, self.notes = runs, notes
-        twins = read_twins(table)
-        self.cases = [Case(runs, scene, twins) for scene in runs.scenes if scene in twins]
+        references = read_references(table)
+        self.cases = [Case(runs, scene, references) for scene in runs.scenes
+                      if scene in references]
         self.there = [case for case in self.cases if case.run.has()]
         self.alone = self.of("alone")
         self.long = self.of("medium")
         self.lab = self.of("lab")
-        self.foretold = {run.tag: Foretold(run) for run in self.alone
-                         if run.text("status") == "fine"}
+        self.predicted = {run.tag: Predicted(run) for run in self.alone
+                          if run.text("status") == "fine"}
 
     def of(self, variant):
         return [self.runs.first(scene, variant) for scene in self.runs.scenes
@@ -106,17 +114,18 @@ def write(runs, _charts, _results, _pages):
     page.heading("The zoo: scenes as other people write them", 1)
     sources = made_with([case.run for case in zoo.cases])
     page.prose(f"""`make zoo` writes this page from [zoo.csv](zoo.csv): {len(zoo.there)} of
-        {len(zoo.cases)} wanted runs are there{sources}. Each case shows the content of its twin,
-        which is friendly, in a way in which others write scenes; [zoo.txt](zoo.txt) is the table.
-        The command makes the scene; then `ted4enc SCENE -o FILE.ted4 --preset draft --seed 1`
-        trains it, with the options that stand behind the command. The preset is draft, because the
-        default takes several times as long.""")
+        {len(zoo.cases)} wanted runs are there{sources}. Each case shows the content of its
+        reference scene in a way in which others write scenes. Reference scenes have nothing
+        unusual: several cameras at each time, points on surfaces, opaque PNG. [zoo.txt](zoo.txt)
+        is the table. The command makes the scene; then `ted4enc SCENE -o FILE.ted4 --preset draft
+        --seed 1` trains it, with the options that stand behind the command. The preset is draft,
+        because the default takes several times as long.""")
     bars = Bars()
     case_bars(zoo, bars)
     back_bar(bars, zoo.lab, "the same on the scenes of the stability lab",
              "`bench/zoo.sh lab`")
     back_bar(bars, zoo.long, "the same in long trainings", "`bench/zoo.sh long`")
-    foretold_bars(zoo, bars)
+    predicted_bars(zoo, bars)
     page.prose(bars.summary())
     bars.show(page, "command; then `python3 -m bench.pages zoo`")
     show_cases(zoo, page)
@@ -130,23 +139,25 @@ def write(runs, _charts, _results, _pages):
 
 
 def case_bars(zoo, bars):
-    there = zoo.there
+    there, marks = zoo.there, mark([case.run for case in zoo.there])
     fine = sum(case.is_fine() for case in there)
     bars.add(1, "cases that end with exit status 0", "all of at least 24",
-             f"{fine} of {len(there)}",
+             f"{fine} of {len(there)}{marks}",
              False if len(zoo.cases) < LEAST_CASES else zoo.so_far(len(there) - fine),
              "`bench/zoo.sh`")
     held = sum(case.above() is not None for case in there)
     below = sum(case.is_below() for case in there)
-    bars.add(1, "held-out pictures against the twin", f"at most {MOST_BELOW} dB below",
-             f"{held - below} of {held}", zoo.so_far(below), "`bench/zoo.sh`")
-    turns = sum(case.takes_turns() for case in there)
-    gone = sum(case.is_gone() for case in there)
+    bars.add(1, "held-out pictures against the reference scene", f"at most {MOST_BELOW} dB below",
+             f"{held - below} of {held}{marks}", zoo.so_far(below), "`bench/zoo.sh`")
+    turns = [case for case in there if case.takes_turns()]
+    shown = [case.is_shown() for case in turns]
+    ok = zoo.so_far(False in shown)
     bars.add(2, "cameras that take turns: what moves, in training pictures",
-             f"at least {LEAST_MOVING} dB", f"{turns - gone} of {turns}", zoo.so_far(gone),
-             "`bench/zoo.sh 'turns*'`")
+             f"at least {LEAST_MOVING} dB",
+             f"{shown.count(True)} of {len(turns)}{mark([case.run for case in turns])}",
+             "?" if ok and None in shown else ok, "`bench/zoo.sh 'turns*'`")
     back = sum(case.run.count("rollbacks") for case in there)
-    bars.add(3, "the monitor goes back to a checkpoint", "never", f"{back:.0f} times",
+    bars.add(3, "the monitor goes back to a checkpoint", "never", f"{back:.0f} times{marks}",
              zoo.so_far(back), "`bench/zoo.sh`")
 
 
@@ -154,42 +165,46 @@ def back_bar(bars, runs, what, how):
     there = [run for run in runs if run.has()]
     back = sum(run.count("rollbacks") + (run.text("status") != "fine") for run in there)
     bars.add(3, what + ", and that they end well", "never",
-             f"{len(there)} trainings, {back:.0f} times",
+             f"{len(there)} trainings, {back:.0f} times{mark(there)}",
              False if back else None if len(there) < len(runs) else True, how)
 
 
-def foretold_bars(zoo, bars):
+def predicted_bars(zoo, bars):
     how = "`bench/zoo.sh --jobs 1 --threads 0 alone`"
-    count = len(zoo.foretold)
+    there = [run for run in zoo.alone if run.has()]
 
     def add(what, limit, measure, most, text):
-        worst = max(map(measure, zoo.foretold.values()), default=0)
-        bars.add(4, what, limit, text(worst) if count else "-",
-                 False if worst > most else None if count < len(zoo.alone) else True, how)
+        known = [value for value in map(measure, zoo.predicted.values()) if value is not None]
+        ok = None if len(there) < len(zoo.alone) else "?" if len(known) < len(there) else True
+        bars.add(4, what, limit,
+                 f"at worst {text(max(known))}, {len(known)} runs{mark(there)}" if known else "",
+                 False if known and max(known) > most else ok, how)
 
     add("estimate of the whole time, from a tenth of it on; alone on the machine", "within 25 %",
-        lambda one: one.time, MOST_TIME,
-        lambda worst: f"at worst {100 * worst:.1f} %, {count} runs")
-    add("`psnr` of the last line", "within 0.5 dB", lambda one: one.psnr, MOST_PSNR,
-        lambda worst: f"at worst {worst:.2f} dB")
+        lambda one: one.time, MOST_TIME, lambda worst: percent(worst, 1))
+    add("`psnr` of the last line", "within 0.5 dB", lambda one: one.psnr, MOST_PSNR, decibels)
     add("`bytes` of the last line", "within 5 %", lambda one: one.bytes, MOST_BYTES,
-        lambda worst: f"at worst {100 * worst:.2f} %")
+        lambda worst: percent(worst, 2))
+
+
+def decibels(number):
+    return "-" if number is None else f"{number:.2f} dB"
 
 
 def show_cases(zoo, page):
     page.heading("Every case")
-    page.prose("""PSNR is in dB: of held-out pictures, the same against the twin's, of training
-        pictures, and of these inside the masks of what moves and of its shadow, over all pixels.
-        Seconds are of one core; warnings are those of ted4enc; *back* is how often the monitor went
-        back to a checkpoint.""")
-    page.table("case", "command", "twin", "held out", "against twin", "training", "what moves",
-               "bytes", "anchors", "steps", "seconds", "warnings", "back", "verdict")
+    page.prose("""PSNR is in dB: of held-out pictures, the same against the reference scene's, of
+        training pictures, and of these inside the masks of what moves and of its shadow, over all
+        pixels. Seconds are of one core; warnings are those of ted4enc; *back* is how often the
+        monitor went back to a checkpoint.""")
+    page.table("case", "command", "reference", "held out", "against reference", "training",
+               "what moves", "bytes", "anchors", "steps", "seconds", "warnings", "back", "verdict")
     for case in zoo.cases:
         if not case.run.has():
-            page.row_missing(case.scene, case.commands(), case.twin)
+            page.row_missing(case.scene, case.commands(), case.reference)
             continue
         run, why = case.run, case.missed()
-        page.row(case.scene + mark([run]), case.commands(), case.twin or "-",
+        page.row(case.scene + mark([run]), case.commands(), case.reference or "-",
                  fixed(run.number("psnr"), 2), signed(case.above(), 2),
                  *cells(run, "train_psnr:2 moving_psnr:2 bytes anchors steps cpu_s:0 warnings "
                              "rollbacks"), f"**{why}**" if why else "met")
@@ -212,7 +227,7 @@ def show_back(page, runs, title, text):
 def show_alone(zoo, page):
     if not zoo.alone:
         return
-    page.heading("What is foretold")
+    page.heading("What is predicted")
     page.prose("""The table shows the largest difference between the time that `ted4enc` says and
         the time that the whole training takes, from a tenth of it on, in hundredths; and the
         differences between the last line's `psnr` and `bytes` and those of the file. Each run has
@@ -222,10 +237,9 @@ def show_alone(zoo, page):
         if not run.has():
             page.row_missing(run.scene)
             continue
-        one = zoo.foretold.get(run.tag)
+        one = zoo.predicted.get(run.tag)
         page.row(run.scene + mark([run]), fixed(run.number("train_s"), 0), *(
-            (f"{100 * one.time:.1f} %", f"{one.psnr:.2f} dB", f"{100 * one.bytes:.2f} %")
-            if one else ("-", "-", "-")))
+            (percent(one.time, 1), decibels(one.psnr), percent(one.bytes, 2)) if one else "---"))
 
 
 def show_misses(zoo, page):

@@ -83,4 +83,19 @@ sed -i /fair/d "$out/held-out.csv"
 make_report || fail run "status $?"
 check unknown_cameras "$page" \
     'Rests on 2 scenes, unknown held-out cameras, 1 seed | cannot be said: rests on unknown held-out cameras |'
+
+# A sentence about scenes at one seed takes its "less than seeds differ" from these scenes alone: on
+# c, which it leaves out, the curve does not reach.
+python3 - >"$out/said" 2>&1 <<END && ok scenes_of_a_sentence || fail scenes_of_a_sentence \
+    "$(cat "$out/said")"
+from types import SimpleNamespace as One
+from bench.pages.report import findings
+seeded = One(scene="a", changes=[-0.1, -0.1], mean=-0.1, error=0.1, pairs=[])
+findings.seeded_on = lambda *_: [seeded]
+findings.changes = lambda *_: [(s, One(psnr=p)) for s, p in (("a", 0), ("b", -0.1), ("c", None))]
+findings.within_seeds = lambda runs, scene, change: scene != "c"
+findings.rows_of = lambda *_: []
+text = findings.deformation(One(runs=None, family=One(is_worse=lambda _: "?", count=2)))[0]
+assert text.endswith("At one seed it loses 0.10 dB on \`b\`, less than seeds differ."), text
+END
 exit $bad

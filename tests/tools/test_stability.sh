@@ -190,8 +190,9 @@ check bars "$page" \
     '| 3 | the same seed trained twice | the same bytes | 1 of 1 scenes told, 1 equal in size and hash | met |'
 check points "$page" '| wall | 30.50 / 27.00 | 30.00 / 26.50 | -0.50 |' \
     '| 1 | what ran | at least 16 scenes x 3 seeds x 6 variants | 2 scenes whole'
+check sum_of_not_finite "$page" 'finite*, which is their sum'
 check parts "$page" '| wall | 30.50 | - |' '| calm | 33.10 | -0.50; -10.0 % (1 of 2) |'
-check twins "$page" '| hue | whole | 29.00 / 28.00 | 700 |' \
+check colours "$page" '| hue | whole | 29.00 / 28.00 | 700 |' \
     '| hue | nocolour | 28.00 / 27.00 | 650 |'
 check strips "$page" '| wall-whole-1 | 28.00 | 3 | 1 | ![wall](lab/wall-whole-1.jpg) |'
 [ "$(ls "$out/page/lab" | tr '\n' ' ')" = "mean.svg out.svg worst.svg " ] && ok charts ||

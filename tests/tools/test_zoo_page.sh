@@ -84,7 +84,7 @@ cmp -s "$out/calls" "$out/before" && ok nothing_twice || fail nothing_twice "$(c
 # after 40 s 45 s.
 step() { echo '{"step":1,"stage":"1","psnr":'$3',"bytes":9,"seconds":'$1',"left":'$2'}'; }
 { step 4 100 10; step 12 48 20; step 40 5 21.50; } >"$out/steps"
-told=$(python3 -m bench.pages foretold 50.00 "$out/steps")
+told=$(python3 -m bench.pages predicted 50.00 "$out/steps")
 [ "$told" = 0.900,1.200,21.50,9 ] && ok from_a_tenth_on || fail from_a_tenth_on "$told"
 
 # ---- the page ----
@@ -112,20 +112,21 @@ make_page || { fail page "status $?"; exit 1; }
 check cells "$page" \
     '| kind | `ted4scene toys --masks` | - | 30.00 | - | 31.00 | 25.00 | 100 | 5 | 14000 | 49 | 0 | 0 | met |' \
     '| odd† | `ted4scene toys --unit 100 --masks` | kind | 28.50 | -1.50 |' \
-    '| **below its twin** |' \
+    '| **below its reference** |' \
     '`, `--hold-out cam00 --alpha premultiplied` | kind | 29.50 | -0.50 | 31.00 | - |' \
     '| **what moves** |' '| **error 3: no points** |'
 check bars "$page" \
-    '| 1 | cases that end with exit status 0 | all of at least 24 | 4 of 5 | **missed** |' \
-    '| at most 1 dB below | 2 of 3 | **missed** |' '| at least 22 dB | 0 of 1 | **missed** |' \
-    '| never | 0 times | met |'
-check long "$page" '| never | 1 trainings, 1 times | **missed** |' \
+    '| 1 | cases that end with exit status 0 | all of at least 24 | 4 of 5† | **missed** |' \
+    '| at most 1 dB below | 2 of 3† | **missed** |' '| at least 22 dB | 0 of 1 | **missed** |' \
+    '| never | 0 times† | met |'
+check long "$page" '| never | 1 trainings, 1 times† | **missed** |' \
     '| odd† | 29.25 | 32.00 | 25.50 | 200 | 60000 | 49 | 1 |'
-check foretold "$page" '| within 25 % | at worst 20.0 %, 1 runs | not run yet |' \
-    '| within 0.5 dB | at worst 0.10 dB | not run yet |' \
-    '| within 5 % | at worst 3.00 % | not run yet |' '| kind | 50 | 20.0 % | 0.10 dB | 3.00 % |' \
+check predicted "$page" '| within 25 % | at worst 20.0 %, 1 runs | not run yet |' \
+    '| within 0.5 dB | at worst 0.10 dB, 1 runs | not run yet |' \
+    '| within 5 % | at worst 3.00 %, 1 runs | not run yet |' \
+    '| kind | 50 | 20.0 % | 0.10 dB | 3.00 % |' \
     '| odd | not run yet |'
-check misses "$page" '* odd (below its twin): Because it is odd.' \
+check misses "$page" '* odd (below its reference): Because it is odd.' \
     '* turns (what moves): **not explained yet**' '* broken (error 3: no points): It has no points.'
 cp "$page" "$out/first.md"
 make_page && cmp -s "$page" "$out/first.md" && ok same_bytes ||
@@ -136,9 +137,19 @@ sed 's/^kind-alone\(.*\)0.9,1.2,30.1,103,/odd-alone\10.7,1.1,30.6,94,/' "$out/ro
     grep odd-alone >>"$out/page/zoo.csv"
 sed -i '/alone/d' "$out/states" && printf 'done %s\n' kind-alone-1 odd-alone-1 >>"$out/states"
 make_page
+cp "$out/page/zoo.csv" "$out/kept.csv"
 check told_wrong "$page" '| at worst 30.0 %, 2 runs | **missed** |' \
-    '| at worst 0.60 dB | **missed** |' '| at worst 6.00 % | **missed** |'
-check met "$page" '| at most 1 dB below | 3 of 3 | not run yet |' \
-    '| at least 22 dB | 1 of 1 | not run yet |' '| never | 2 times | **missed** |' \
+    '| at worst 0.60 dB, 2 runs | **missed** |' '| at worst 6.00 %, 2 runs | **missed** |'
+check met "$page" '| at most 1 dB below | 3 of 3† | not run yet |' \
+    '| at least 22 dB | 1 of 1 | not run yet |' '| never | 2 times† | **missed** |' \
     '| broken | `ted4scene toys --points none` | kind | not run yet |'
+
+# What is not known is neither 0 nor 100 % off: an estimate and the last bytes of odd-alone, and
+# what moves on turns.
+awk -F, -v OFS=, '/^odd-alone/ { $19 = ""; $22 = "" } /^turns/ { $10 = "" } { print }' \
+    "$out/kept.csv" >"$out/page/zoo.csv"
+make_page
+check not_known "$page" '| within 25 % | at worst 20.0 %, 1 runs | cannot be said |' \
+    '| at worst 3.00 %, 1 runs | cannot be said |' '| at worst 0.60 dB, 2 runs | **missed** |' \
+    '| odd | 50 | - | 0.60 dB | - |' '| at least 22 dB | 0 of 1 | not run yet |'
 exit $bad

@@ -112,17 +112,16 @@ def deformation(report):
     if not seeded or not recipe:
         return None
     known = [one.scene for one in seeded]
-    single = [(scene, change.psnr) for scene, change in changes(report, "inr")
+    single = [(scene, change) for scene, change in changes(report, "inr")
               if change.psnr is not None and scene not in known]
-    chance = all(within_seeds(report.runs, scene, change)
-                 for scene, change in changes(report, "inr") if scene not in known)
+    chance = all(within_seeds(report.runs, *one) for one in single)
     text = ("In the paper's recipe alone, a network of place and time as wide as F_deform is "
             f"{compared_on(recipe, ' than the bank of motions')}. Beside multi-view seeding, which "
             f"does much of the same work, it is {compared_on(seeded)}"
             f"{together(report, *seeded, *recipe)}.")
     if single:
         text += " At one seed it " + " and ".join(
-            f"{loses(psnr)} on `{scene}`" for scene, psnr in single) + (
+            f"{loses(change.psnr)} on `{scene}`" for scene, change in single) + (
                 ", less than seeds differ." if chance else ".")
     return text, (rows_over_seeds(seeded + recipe)
                   + rows_of(report, "inr", [scene for scene, _ in single]))

@@ -16,9 +16,9 @@ def section(report):
         camera that sees them. *recipe*: see [one thing changed](#one-thing-changed).""")
     page.table("run", "PSNR dB", "bytes", "on surfaces", "PSNR dB", "bytes", "difference")
     for run in wanted:
-        twin = runs.find(run.tag.replace("_sfm-", "-"))
-        if run.has() and twin.has():
-            page.row(run.name(), *cells(run, "psnr:2 bytes"), twin.name(),
-                     *cells(twin, "psnr:2 bytes"), signed(difference(run, twin), 2, " dB"))
+        plain = runs.find(run.tag.replace("_sfm-", "-"))
+        if run.has() and plain.has():
+            page.row(run.name(), *cells(run, "psnr:2 bytes"), plain.name(),
+                     *cells(plain, "psnr:2 bytes"), signed(difference(run, plain), 2, " dB"))
         else:
             page.row_missing(run.tag)
