@@ -14,8 +14,8 @@ class Seeded:
     "recipe" against SCENE-recipe-2, SCENE-recipe_seed2-2, ...
 
     changes: by seed, dB; None when one is missing, or there is one seed alone. With them: mean, dB;
-    error: its standard error, dB; tail: the probability that chance alone makes a mean that lies at
-    least as far from zero on its side."""
+    error: its standard error, dB; chance: the probability that chance alone makes a mean that lies
+    at least as far from zero, on either side."""
 
     def __init__(self, runs, scene, variant):
         self.scene, self.variant = scene, variant
@@ -39,8 +39,8 @@ class Seeded:
         self.mean = total / n
         self.error = (math.sqrt((square - total * total / n) / (n - 1) / n)
                       if square * n > total * total else 0)
-        self.tail = (student_tail(abs(self.mean) / self.error, n - 1) if self.error
-                     else 0 if self.mean else 0.5)
+        self.chance = (2 * student_tail(abs(self.mean) / self.error, n - 1) if self.error
+                       else 0 if self.mean else 1)
 
     def change(self, runs, run, other):
         """PSNR of a run less that of another, had both as many bytes: along the curve of the base
@@ -52,9 +52,8 @@ class Seeded:
 
     def is_worse_alone(self):
         """Whether the mean, judged by itself, lies farther from zero than chance puts it once in
-        twenty on that side: True worse, False better, "?" there is no saying, as without
-        changes."""
-        if self.changes is None or self.tail > LEVEL:
+        twenty, on either side: True worse, False better, "?" inconclusive, as without changes."""
+        if self.changes is None or self.chance > LEVEL:
             return "?"
         return self.mean < 0
 
@@ -90,11 +89,10 @@ class Family:
         self.all = [Seeded(runs, *pair) for pair in wanted if pair[1] != "recipe"]
         judged = [seeded for seeded in self.all if seeded.changes]
         self.count = len(judged)
-        self.holding = holm({(seeded.scene, seeded.variant): 2 * seeded.tail
-                             for seeded in judged})
+        self.holding = holm({(seeded.scene, seeded.variant): seeded.chance for seeded in judged})
 
     def is_worse(self, seeded):
-        """True worse, False better, "?" there is no saying."""
+        """True worse, False better, "?" inconclusive."""
         if (seeded.scene, seeded.variant) not in self.holding:
             return "?"
         return seeded.mean < 0
@@ -102,5 +100,6 @@ class Family:
     def holds(self):
         """How many verdicts hold by themselves, and how many among all, as a sentence."""
         alone = sum(seeded.is_worse_alone() != "?" for seeded in self.all)
-        return (f"Of {self.count} comparisons {alone} tell a difference when each is judged alone, "
-                f"and {len(self.holding)} when all are judged together.")
+        tell = "tells" if alone == 1 else "tell"
+        return (f"Of {self.count} comparisons {alone} {tell} a difference when each is judged "
+                f"alone, and {len(self.holding)} when all are judged together.")

@@ -78,10 +78,10 @@ def seeded_section(report):
         PSNR at equal bytes, along the curve of the whole method, and the mean with its standard
         error. Negative numbers mean that the variant is worse. *Chance*: how often chance alone
         makes a mean as far from zero, on either side (Student's t). *Alone*: the verdict when no
-        other comparison is made; *no saying* where chance makes such a mean on that side more often
-        than once in twenty. *Together*: the verdict when all comparisons of this table and the next
-        are judged together, so that with a chance of 5 % at most one of them or more is wrong
-        (Holm's correction, either side). """ + report.family.holds())
+        other comparison is made; *inconclusive* where that chance is above 5 %. *Together*: the
+        verdict when all comparisons of this table and the next are judged together, so that with a
+        chance of 5 % at most one of them or more is wrong (Holm's correction, either side). """
+               + report.family.holds())
     page.table("scene", "variant", "by seed", "mean dB", "chance", "alone", "together")
     for scene, variant in seeded_variants(runs, "seeded"):
         seeded = Seeded(runs, scene, variant)
@@ -94,8 +94,8 @@ def seeded_section(report):
 
 def verdicts(report, seeded):
     """How often chance makes such a mean, the verdict alone, and that among all comparisons."""
-    words = {True: "worse", False: "better", "?": "no saying"}
-    return (percent(2 * seeded.tail, 1), words[seeded.is_worse_alone()],
+    words = {True: "worse", False: "better", "?": "inconclusive"}
+    return (percent(seeded.chance, 1), words[seeded.is_worse_alone()],
             words[report.family.is_worse(seeded)])
 
 
