@@ -1,13 +1,13 @@
-# runs.sh - what bench/sweep.sh, bench/stability.sh, bench/capacity.sh and bench/zoo.sh share: the
-# runs of a table, one process each, and a row of a CSV for each result. Sourced, from the project's
-# root. A row's key tells its options and the sources that decide its bytes and numbers; comments
-# and spacing do not count. The row is stale when either differs from the present ones, unless
-# bench/equal.csv says that those sources write the same bytes. A row keeps the key of the sources
-# that made it. The script may be killed at any moment and called again, also several times at once:
-# programs are copied before use, each stage 1 that runs share and each own scene is made once,
-# trainings go on from their last checkpoint, and rows go into the table whole: each is first a file
-# of its own, which is removed once the table has it. Several machines may work on one folder if
-# its locks hold between them (flock). The script sets beforehand:
+# runs.sh - what bench/{sweep,stability,capacity,zoo,bd_rate}.sh share: the runs of a table, one
+# process each, and a row of a CSV for each result. Sourced, from the project's root. A row's key
+# tells its options and the sources that decide its bytes and numbers; comments and spacing do not
+# count. The row is stale when either differs from the present ones, unless bench/equal.csv says
+# that those sources write the same bytes. A row keeps the key of the sources that made it. The
+# script may be killed at any moment and called again, also several times at once: programs are
+# copied before use, each stage 1 that runs share and each own scene is made once, trainings go on
+# from their last checkpoint, and rows go into the table whole: each is first a file of its own,
+# which is removed once the table has it. Several machines may work on one folder if its locks hold
+# between them (flock). The script sets beforehand:
 #     program                   its name
 #     build data work results   folders
 #     table                     the table of runs
@@ -31,7 +31,7 @@ only= list= missing= patterns= child= build_only= shared= row_files= merge=
 
 die() { echo "$program: $*" >&2; exit 3; }
 value() { sed -n "s/.*\"$1\":\"\{0,1\}\([-0-9a-z.+]*\).*/\1/p" "$2"; }
-short_hash() { sha1sum | cut -c1-10; }
+key_hash() { sha1sum | cut -c1-10; }
 measure_failure() { return 1; }
 
 # lock FD: of the file that is open there. 2: another run holds it.
@@ -62,7 +62,7 @@ sources() {
             ref-encoder/math/*.[ch] ref-encoder/write/*.[ch] ref-encoder/kernel/*.[ch] \
             ref-encoder/data/*.[ch] ref-encoder/eval/*.[ch] ref-decoder/base/*.[ch] \
             ref-decoder/norm/*.[ch] ref-decoder/recon/*.[ch] ref-decoder/render/*.[ch] "$@"
-    } | short_hash
+    } | key_hash
 }
 
 # time_decoder FILE: the best of five decodings on one thread, in $decode_ms.
@@ -117,7 +117,7 @@ find_places() {
     *)      folder=$data/${where%@*} ;;
     esac
     [ -z "$share" ] ||
-        stage1_file=$work/stage1-$sources_now/$(echo "${where%@*} $stage1" | short_hash).stage1
+        stage1_file=$work/stage1-$sources_now/$(echo "${where%@*} $stage1" | key_hash).stage1
 }
 
 # Own scenes are made: own:NAME+size=96x64 by ted4scene NAME --size 96x64. 2: another run is making
@@ -195,7 +195,7 @@ is_equal() {
 find_state() {
     sources_now=$version
     case $where in own:*) sources_now=$own_version ;; esac
-    trained_key=$(echo "$where $options" | short_hash)-$sources_now
+    trained_key=$(echo "$where $options" | key_hash)-$sources_now
     key=$trained_key$measured
     state=missing
     for had in $(key_in "$csv") $(key_in "$work/rows/$tag.row"); do
@@ -333,7 +333,7 @@ begin_runs() {
     version=$(sources)
     own_version=$(sources tools/scene/*.[ch])
     measured=
-    [ -z "$judges" ] || measured=.$(awk -f bench/sources.awk $judges | short_hash)
+    [ -z "$judges" ] || measured=.$(awk -f bench/sources.awk $judges | key_hash)
     chosen=$(each_chosen) || exit 3
     [ -n "$chosen" ] || die "no run chosen; --list shows them all"
     if [ -n "$list" ]; then

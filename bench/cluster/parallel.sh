@@ -1,7 +1,7 @@
 #!/bin/sh
 # parallel.sh - makes the missing and stale rows of a table of runs by GNU parallel, on this machine
 # or on several that share this folder. bench/cluster.md tells how.
-# Usage, from anywhere:  bench/cluster/parallel.sh sweep|stability|capacity|zoo [PATTERN...]
+# Usage, from anywhere:  bench/cluster/parallel.sh sweep|stability|capacity|zoo|bd_rate [PATTERN...]
 #                             [--missing] [--jobs N] [--threads N] [-- OPTION_OF_PARALLEL...]
 #     PATTERN..., --missing, and the environment    as bench/sweep.sh, bench/stability.sh, ... take
 #                                                   them

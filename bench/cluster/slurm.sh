@@ -1,7 +1,7 @@
 #!/bin/sh
 # slurm.sh - makes the missing and stale rows of a table of runs by job arrays of Slurm, on machines
 # that share this folder. bench/cluster.md tells how.
-# Usage, from anywhere:  bench/cluster/slurm.sh sweep|stability|capacity|zoo [PATTERN...]
+# Usage, from anywhere:  bench/cluster/slurm.sh sweep|stability|capacity|zoo|bd_rate [PATTERN...]
 #                             [--missing] [--tasks N] [--at-once N] [--wait]
 #                             [-- OPTION_OF_SBATCH...]
 #     PATTERN..., --missing, and the environment    as bench/sweep.sh, bench/stability.sh, ... take

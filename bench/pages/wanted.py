@@ -1,4 +1,4 @@
-"""The runs that a table wants (bench/sweep.txt, stability.txt, capacity.txt, zoo.txt).
+"""The runs that a table wants: bench/sweep.txt, stability.txt, capacity.txt, zoo.txt, bd_rate.txt.
 
 The options of a run come out once each, the last value of a name winning, in the order in which
 the names first come.

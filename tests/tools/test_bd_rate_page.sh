@@ -66,4 +66,11 @@ check seeds "$page" 'Bars: 2 met, 1 missed, 0 not run yet.' \
 cp "$out/one_seed.txt" "$out/table.txt"
 rm "$out/bd_rate.csv" && : >"$out/states" && make_page || fail page "not made"
 check empty "$page" 'Bars: 0 met, 0 missed, 3 not run yet.' '| turn | compact | - | - | 0 of 8 |'
+
+# The drivers of bench/cluster take its table, as bench/bd_rate.sh says.
+said=$(program=parallel.sh takes=" " flags=" " TED4_WORK=$out/work
+    set -- bd_rate 'kitchen-*'
+    . bench/cluster/driver.sh
+    echo "$table$patterns")
+[ "$said" = "bd_rate kitchen-*" ] && ok cluster || fail cluster "$said"
 exit $bad
