@@ -12,19 +12,18 @@ STATES: a file of lines "STATE TAG", which the script that makes the rows prints
 script is asked without it. Environment: TED4_RESULTS (bench: where the rows lie and the pages go),
 TED4_TABLE (the table of wanted runs), TED4_PAGES (bench: where the report finds raster.md,
 render.md, train.md, memory.md and report-notes.md), TED4_NOTES (the notes of stability and zoo).
-Run from the project's root. The same rows give the same bytes. Nothing is replaced unless all
-succeeds.
+Run from the project's root. The same rows give the same bytes. Nothing is replaced before all is
+written; then each file is replaced whole. A kill between these renames leaves some files old.
 SPDX-License-Identifier: BSD-2-Clause"""
 import glob
 import importlib
 import os
-import shutil
 import subprocess
 import sys
 import tempfile
 
 from . import budget, logs, wanted
-from .rows import Runs
+from .rows import Measured, Runs
 from .svg import Charts
 
 # Of each page: the script and the rows behind it, the folder of its charts, and its module.
@@ -50,14 +49,31 @@ def read_states(name, table, results, path, scratch):
     return {word[1]: word[0] for word in map(str.split, text.splitlines())}
 
 
-def replace_charts(scratch, folder):
-    for chart in glob.glob(folder + "/*.svg"):
-        os.remove(chart)
-    charts = glob.glob(scratch + "/*.svg")
-    if charts:
-        os.makedirs(folder, exist_ok=True)
-    for chart in charts:
-        shutil.move(chart, folder)
+def replace_all(texts, old):
+    """texts: {path: text} that take the place of what is there, together; of the old paths those go
+    that are not among them."""
+    try:
+        for path, text in texts.items():
+            os.makedirs(os.path.dirname(path), exist_ok=True)
+            with open(path + ".part", "w", encoding="utf-8") as file:
+                file.write(text)
+        for path in texts:
+            os.replace(path + ".part", path)
+    finally:
+        for path in texts:
+            if os.path.exists(path + ".part"):
+                os.remove(path + ".part")
+    for path in set(old) - set(texts):
+        os.remove(path)
+
+
+def read_charts(scratch, folder):
+    """{path in the folder: text} of the charts that were drawn."""
+    charts = {}
+    for path in sorted(glob.glob(scratch + "/*.svg")):
+        with open(path, encoding="utf-8") as file:
+            charts[f"{folder}/{os.path.basename(path)}"] = file.read()
+    return charts
 
 
 def write_page(page, states=None):
@@ -67,15 +83,14 @@ def write_page(page, states=None):
     pages = os.environ.get("TED4_PAGES", "bench")
     module = importlib.import_module("." + module, __package__)
     with tempfile.TemporaryDirectory() as scratch:
-        runs = Runs(wanted.read_table(table),
+        runs = Runs(wanted.read_table(table, Measured),
                     read_states(name, table, results, states, scratch + "/work"),
                     f"{results}/{name}.csv")
         os.mkdir(scratch + "/charts")
         texts = module.write(runs, Charts(scratch + "/charts", folder), results, pages)
-        replace_charts(scratch + "/charts", f"{results}/{folder}")
-    for file_name, text in texts.items():
-        with open(f"{results}/{file_name}", "w", encoding="utf-8") as file:
-            file.write(text)
+        replace_all({f"{results}/{file_name}": text for file_name, text in texts.items()}
+                    | read_charts(scratch + "/charts", f"{results}/{folder}"),
+                    glob.glob(f"{results}/{folder}/*.svg"))
 
 
 def wanted_lines(table):

@@ -73,15 +73,14 @@ def made_with(runs):
 
 
 class Runs:
-    """all: in the order of the table. scenes, variants: in the order in which they first come.
-    where: the folder of each scene."""
+    """wanted: the table's, as Measured. all: in its order. scenes, variants: in the order in which
+    they first come. where: the folder of each scene."""
 
     def __init__(self, wanted, states, csv):
         self.all, self.tags, self.scenes, self.variants = [], {}, [], []
         self.strangers = self.others = 0
         self.by_variant, self.where = {}, {}
         for run in wanted:
-            run.__class__ = Measured
             run.state = states.get(run.tag, "missing")
             self.add(run)
         for runs in self.by_variant.values():

@@ -72,10 +72,11 @@ def read_stages(path):
 
 
 class Table:
-    """Reads a table of wanted runs into self.runs. A fault in it ends the program."""
+    """Reads a table of wanted runs into self.runs, as objects of the class kind. A fault in it
+    ends the program."""
 
-    def __init__(self, path, stages):
-        self.path, self.stages, self.number = path, stages, 0
+    def __init__(self, path, stages, kind):
+        self.path, self.stages, self.kind, self.number = path, stages, kind, 0
         self.places, self.place_option, self.base = [], "", ""
         self.where, self.scene_options, self.more_groups = {}, {}, {}
         self.runs, self.tags = [], set()
@@ -128,7 +129,8 @@ class Table:
         all_options = Options(self.fail)
         all_options.take(f"{base} {self.scene_options[scene]} {self.place_option} "
                          f"{self.places[int(place) - 1]} {options}")
-        run = Run(tag, groups + self.more_groups.get(scene, ""), scene, self.where[scene], variant)
+        run = self.kind(tag, groups + self.more_groups.get(scene, ""), scene, self.where[scene],
+                        variant)
         run.place, run.keep = place, keep
         run.weight = all_options.value.get("--lambda ", "")
         run.stage1, run.options = all_options.text(self.decides_stage1), all_options.text()
@@ -140,6 +142,6 @@ class Table:
         return not name.startswith("--set ") or self.stages.get(name[6:-1], 0) < 2
 
 
-def read_table(path):
-    """The wanted runs of a table, in its order."""
-    return Table(path, read_stages(OPTIONS)).runs
+def read_table(path, kind=Run):
+    """The wanted runs of a table, in its order, as objects of that class."""
+    return Table(path, read_stages(OPTIONS), kind).runs

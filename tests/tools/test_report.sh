@@ -266,6 +266,19 @@ mv "$out/kept.csv" "$out/sweep.csv"
 mv "$out/kept_states" "$out/states"
 make_report || fail run "status $?"
 
+# Where one page cannot be written, nothing is replaced, and nothing is left beside it.
+mv "$out/report.md" "$out/kept.md"
+mkdir "$out/report.md"
+: >"$out/charts/old.svg"
+cp "$page" "$out/before.md"
+make_report 2>/dev/null && fail all_or_nothing "status 0"
+[ -e "$out/charts/old.svg" ] && cmp -s "$page" "$out/before.md" &&
+    [ -z "$(find "$out" -name '*.part')" ] && ok all_or_nothing ||
+    fail all_or_nothing "$(ls "$out" "$out/charts")"
+rmdir "$out/report.md"
+mv "$out/kept.md" "$out/report.md"
+make_report && [ ! -e "$out/charts/old.svg" ] && ok old_chart || fail old_chart "it is there"
+
 echo kitchen-seed3-2,k >>"$out/sweep.csv"
 if make_report 2>/dev/null || ! cmp -s "$page" "$out/first.md"; then fail malformed "accepted";
     else ok malformed; fi
