@@ -30,10 +30,9 @@ class Dots:
 
     def legend(self, svg, left, y):
         """Of scenes that occur anywhere, in a line; those without a curve share one look."""
-        found = {self.styles.marker(value[2]) for panel in self.values.values() for value in panel}
-        names = [(scene, scene) for scene in self.styles.scenes
-                 if self.styles.marker(scene) in found]
-        if "cross" in found:
+        found = {value[2] for panel in self.values.values() for value in panel}
+        names = [(scene, scene) for scene in self.styles.scenes if scene in found]
+        if found - set(self.styles.scenes):
             names.append(("", "other scenes"))
         for scene, text in names:
             svg.marker(self.styles.marker(scene), left, y, 5, self.styles.colour(scene))

@@ -92,16 +92,19 @@ def put_mark(svg, series, x, y, note, right):
 
 
 class SceneStyles:
-    """The look of each scene in all charts of a page; scenes without a curve share one."""
+    """The look of each scene in all charts of a page; scenes without a curve share one. Black is no
+    scene's, so that there is one colour less than markers, and both together repeat late."""
 
     def __init__(self, scenes):
         self.scenes = scenes
 
     def colour(self, scene):
-        return COLOURS[self.scenes.index(scene) + 1] if scene in self.scenes else "#666666"
+        own = COLOURS[1:]
+        return own[self.scenes.index(scene) % len(own)] if scene in self.scenes else "#666666"
 
     def marker(self, scene):
-        return MARKERS[self.scenes.index(scene)] if scene in self.scenes else "cross"
+        return (MARKERS[self.scenes.index(scene) % len(MARKERS)] if scene in self.scenes
+                else "cross")
 
 
 def panels(count, height):

@@ -46,6 +46,12 @@ class Measured(Run):
         """Bytes of the attributes' substreams."""
         return sum(self.count("b_" + name) for name in "feature scaling offset phi tau".split())
 
+    def estimate_error(self):
+        """Percent by which the bits that training estimates differ from those of the attributes'
+        substreams in the file, each of which ends with a whole byte; None when not known."""
+        bits = self.number("estimated_bits")
+        return None if bits is None or not self.payload() else 100 * (bits / 8 / self.payload() - 1)
+
     def position_bits(self):
         """Bits of the file for the position of an anchor; None when they are not known."""
         anchors = self.count("anchors")

@@ -29,10 +29,20 @@ def draw(lab, name, title, label, column, factor=1, zero=False):
                     TOP + 4 + (k + 0.5) * ROW + (i - middle) * 4)
 
 
+def colour(i):
+    """Of variant i."""
+    return COLOURS[i % len(COLOURS)]
+
+
+def marker(i):
+    """Of variant i; once the colours repeat, each has another marker than before."""
+    return MARKERS[(i + i // len(COLOURS)) % len(MARKERS)]
+
+
 def legend(svg, variants):
     left = LEFT
-    for variant, marker, colour in zip(variants, MARKERS, COLOURS):
-        svg.marker(marker, left, 42, 5, colour)
+    for i, variant in enumerate(variants):
+        svg.marker(marker(i), left, 42, 5, colour(i))
         svg.write(left + 10, 46, variant)
         left += 40 + text_width(variant, 12)
 
@@ -53,6 +63,6 @@ def area(svg, scenes, x, height, label):
 def put(svg, cell, i, column, factor, x, y):
     if cell.mean(column) is None:
         return
-    colour = COLOURS[i % len(COLOURS)]
-    svg.line(x.at(factor * cell.least(column)), y, x.at(factor * cell.most(column)), y, colour, 1.6)
-    svg.marker(MARKERS[i % len(MARKERS)], x.at(factor * cell.mean(column)), y, 4.2, colour)
+    svg.line(x.at(factor * cell.least(column)), y, x.at(factor * cell.most(column)), y, colour(i),
+             1.6)
+    svg.marker(marker(i), x.at(factor * cell.mean(column)), y, 4.2, colour(i))

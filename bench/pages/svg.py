@@ -24,7 +24,7 @@ def escape(text):
 
 def text_width(text, size):
     """In pixels, roughly."""
-    return len(text.encode()) * size * 0.57
+    return len(text) * size * 0.57
 
 
 class Charts:

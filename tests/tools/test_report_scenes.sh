@@ -98,4 +98,28 @@ findings.rows_of = lambda *_: []
 text = findings.deformation(One(runs=None, family=One(is_worse=lambda _: "?", count=2)))[0]
 assert text.endswith("At one seed it loses 0.10 dB on \`b\`, less than seeds differ."), text
 END
+
+# Words are as wide as their letters, not as their bytes; twenty scenes differ by colour or marker,
+# and a legend names those that are there; nine variants of the lab have nine names.
+python3 - >"$out/said" 2>&1 <<END && ok charts || fail charts "$(cat "$out/said")"
+from types import SimpleNamespace as One
+from bench.pages import dots, stability_marks, svg
+from bench.pages.plot import SceneStyles
+assert svg.text_width("λ −1", 12) == svg.text_width("a -1", 12)
+names = [f"s{i}" for i in range(20)]
+styles = SceneStyles(names)
+assert len({(styles.colour(s), styles.marker(s)) for s in names}) == 20
+assert styles.colour("s19") != svg.COLOURS[0] and styles.marker("s19") != "cross"
+rows, picture = dots.Dots(styles), svg.Svg("", 9, 9, "")
+rows.row("a")
+rows.value(1, 0.5, "s0")
+rows.value(1, 0.5, "other")
+rows.legend(picture, 0, 0)
+assert [part[part.index(">") + 1:-7] for part in picture.parts if part.startswith("<text")] == [
+    "s0", "other scenes"], picture.parts
+picture = svg.Svg("", 9, 9, "")
+stability_marks.legend(picture, names[:9])
+assert sum(part.startswith("<text") for part in picture.parts) == 9
+assert len({(stability_marks.colour(i), stability_marks.marker(i)) for i in range(9)}) == 9
+END
 exit $bad

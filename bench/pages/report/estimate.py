@@ -6,14 +6,6 @@ from ..words import signed
 from .context import sweep
 
 
-def error_of(run):
-    """Percent by which the estimate differs from the attributes' substreams; None when not
-    known."""
-    if not run.has() or run.payload() <= 0 or run.number("estimated_bits") is None:
-        return None
-    return 100 * (run.count("estimated_bits") / (8 * run.payload()) - 1)
-
-
 def worst_of(pairs):
     """The (error, run) with the largest error; None without any."""
     return max(pairs, key=lambda pair: abs(pair[0]), default=None)
@@ -29,7 +21,7 @@ def section(report):
     dots, known, missing = Dots(report.styles, band=1), [], 0
     for variant in runs.variants:
         dots.row(variant)
-        pairs = [(error_of(run), run) for run in runs.all if run.variant == variant]
+        pairs = [(run.estimate_error(), run) for run in runs.all if run.variant == variant]
         pairs = [pair for pair in pairs if pair[0] is not None]
         for error, run in pairs:
             dots.value(1, error, run.scene)

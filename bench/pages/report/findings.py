@@ -187,7 +187,7 @@ def spans(report):
 
 
 def estimated(report):
-    known = [(estimate.error_of(run), run) for run in report.runs.all]
+    known = [(run.estimate_error(), run) for run in report.runs.all]
     known = [pair for pair in known if pair[0] is not None]
     if not known:
         return None
