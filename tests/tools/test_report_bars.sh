@@ -22,6 +22,28 @@ assert holm({"a": 0.04, "b": 0.03, "c": 0.01}) == {"c"}
 assert holm({"a": 0.02, "b": 0.03}) == {"a", "b"} and holm({}) == set()
 END
 
+# The time to decode a scene: the median over the quantisation steps that are there, since other
+# work may have disturbed a row. With float64 20 ms of networks take the place of 10.
+python3 - >"$out/said" 2>&1 <<END && ok median_ms || fail median_ms "$(cat "$out/said")"
+from bench.pages.report import precision
+from bench.pages.rows import Measured
+class Runs(dict):
+    def find(self, tag):
+        return self.get(tag) or Measured(tag)
+runs = Runs()
+def add(variant, ms):
+    runs[f"s-{variant}-2"] = run = Measured("")
+    run.row = {"decode_ms": ms, "integer_ms": "10", "float64_ms": "20"}
+for variant, ms in (("steps0.5", "40"), ("whole", "90"), ("steps2", "38")):
+    add(variant, ms)
+assert precision.median_ms(runs, "s", "integer") == 40
+assert precision.median_ms(runs, "s", "float64") == 50
+add("steps4", "36")
+assert precision.median_ms(runs, "s", "integer") == 39
+assert precision.median_ms(runs, "s", "float32") is None
+assert precision.steps_of(runs, "s") == "4 quantisation steps"
+END
+
 cat >"$out/table.txt" <<END
 lambdas 0.001 0.002 0.004
 base    --preset fast --seed 1

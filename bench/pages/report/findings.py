@@ -202,10 +202,12 @@ def integers(report):
     ideal = precision.bytes_with(run, "float64")
     if ideal is None:
         return None
+    ms = {one: precision.median_ms(report.runs, SCENE, one) for one in ("integer", "float64")}
     return (f"Entropy networks in integers, which decode alike on every machine, cost "
-            f"{100 * (run.count('bytes') / ideal - 1):.3f} % of the bytes of `{SCENE}`, and the "
-            f"file decodes on one thread in {precision.ms_with(run, 'integer'):.0f} ms, where "
-            f"float64 would take {precision.ms_with(run, 'float64'):.0f} ms.", [run])
+            f"{100 * (run.count('bytes') / ideal - 1):.3f} % of the bytes of `{SCENE}`; a "
+            f"file of it decodes on one thread in {ms['integer']:.0f} ms, where float64 would take "
+            f"{ms['float64']:.0f} ms (medians of {precision.steps_of(report.runs, SCENE)}).",
+            [one for _, one in precision.step_runs(report.runs, SCENE)])
 
 
 # Each with its name, and the heading on the page of tables behind it.

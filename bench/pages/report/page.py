@@ -81,9 +81,12 @@ def headline(report, page):
     run = report.runs.find(SHOWN)
     if run.has():
         speeds = kept.render_speeds(report)
+        rows = [one for _, one in precision.step_runs(report.runs, run.scene)]
+        ms = precision.median_ms(report.runs, run.scene, "integer")
         page.prose(f"""A file of {run.count('bytes') / 1000:.0f} kB shows the moving scene `kitchen`
-            to cameras that training never saw with {fixed(run.number('psnr'), 2)} dB (PSNR) and
-            decodes on one thread in {fixed(run.number('decode_ms'), 0)} ms{mark([run])}."""
+            to cameras that training never saw with {fixed(run.number('psnr'), 2)}
+            dB{mark([run])} (PSNR) and decodes on one thread in {fixed(ms, 0)} ms{mark(rows)}
+            (median of {precision.steps_of(report.runs, run.scene)})."""
             + (f" Two threads draw 100,000 moving Gaussians at 960x536 with {speeds[0][1]:.1f} "
                "frames/s ([render.md](render.md))." if speeds else ""))
     page.prose("""`make report` writes this page from the rows of [sweep.csv](sweep.csv), which
