@@ -10,7 +10,7 @@
  *     symbols TYPE|* value K ...           these k in turn
  *     symbols TYPE|* r R ...               these r in turn
  *     symbol TYPE COMP ANCHOR K            one k, set after all other lines
- * after all other lines SPDX-License-Identifier: BSD-2-Clause */
+ * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdlib.h>
 #include <string.h>
 #include "build.h"

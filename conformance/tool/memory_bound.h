@@ -1,6 +1,7 @@
 /* memory_bound.h - spec 13.3: the most memory that decoding a file may take, and the most that a
  * query may take on top of that. The formulas use the header only, none of the decoder's own
- * derivations. SPDX-License-Identifier: BSD-2-Clause */
+ * derivations.
+ * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef CONF_MEMORY_BOUND_H
 #define CONF_MEMORY_BOUND_H
 

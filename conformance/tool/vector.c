@@ -13,7 +13,7 @@
  *                                          the first error in the order of the file, if it is not
  *                                          the expected one. Every vector of the category tolerant
  *                                          has this line
- * category tolerant has this line SPDX-License-Identifier: BSD-2-Clause */
+ * SPDX-License-Identifier: BSD-2-Clause */
 #include "vector.h"
 
 #include <stdio.h>

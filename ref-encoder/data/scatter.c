@@ -89,7 +89,8 @@ static int is_inside(const ted4_scatter_options *o, const float p[3])
 
 static int try_candidate(const round_job *j, uint64_t i, float point[3], uint8_t rgb[3])
 {
-    /* A candidate uses fewer than 2^8 random numbers. */
+    /* Each candidate has random numbers of its own, whichever thread tries it. Any states do that
+     * differ, because the generator mixes them. Only the low 24 bits of the seed count. */
     uint64_t state = (uint64_t)j->options->seed << 40 ^ i << 8;
     const double u = ted4_split_uniform(&state);
     size_t k, pixel;

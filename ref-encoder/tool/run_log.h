@@ -89,8 +89,8 @@ int ted4_run_log_event(ted4_run_log *l, const ted4_trainer *t, char *why, size_t
  *   what from to           the quantity that was reduced, its old and its new value
  *   trained                steps of each side before the comparison; 0: untrained
  *   taken                  true: the smaller model is kept
- *   cost distortion bytes  [current model, smaller model]; cost is distortion plus the weighted
- * rate Returns the same as ted4_run_log_step. */
+ *   cost distortion bytes  [current model, smaller model]; cost: distortion plus weighted rate
+ * Returns the same as ted4_run_log_step. */
 int ted4_run_log_trials(ted4_run_log *l, const ted4_trainer *t, size_t first, char *why,
                         size_t why_size);
 /* Writes one line about the decision on poses of training cameras (train/step/pose_step.h):

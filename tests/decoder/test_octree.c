@@ -1,7 +1,8 @@
 /* test_octree.c - the octree of cells (norm/octree.h), integers (norm/coded_integer.h), and the
  * adaptive probabilities of both (norm/adaptive.h): what is written is read again, at every depth;
  * a wrong number of cells is noticed; any bytes end, after a bounded number of symbols;
- * probabilities keep their bounds. SPDX-License-Identifier: BSD-2-Clause */
+ * probabilities keep their bounds.
+ * SPDX-License-Identifier: BSD-2-Clause */
 #include "test.h"
 #include <stdlib.h>
 #include <string.h>

@@ -1,6 +1,7 @@
 /* test_exchange.c - sums over views that several processes have drawn, and over chunks
  * (train/state/exchange.h, view_exchange.h, chunk_exchange.h). The processes are threads here,
- * which exchange through common memory. SPDX-License-Identifier: BSD-2-Clause */
+ * which exchange through common memory.
+ * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 
 #include "rank_threads.h"

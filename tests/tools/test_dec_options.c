@@ -1,5 +1,6 @@
 /* test_dec_options.c - the command line of ted4dec: verdicts and exit codes, what is refused and
- * how, defaults. SPDX-License-Identifier: BSD-2-Clause */
+ * how, defaults.
+ * SPDX-License-Identifier: BSD-2-Clause */
 #include <jansson.h>
 #include <math.h>
 

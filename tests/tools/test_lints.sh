@@ -133,6 +133,17 @@ plant_includes() {
         'plant_m.c: may not include train/step/step.h' 'plant_b.h: may not include planted.h'
 }
 
+# As clang-format leaves a tag behind text that it has moved.
+plant_licences() {
+    file tools/plant_none.c 'int x;'
+    file tools/plant_pieces.c '/* A file. SPDX-License''-Identifier:' ' * BSD-2-Clause */'
+    file bench/plant_behind.h '/* A file.' ' * And more. SPDX-License''-Identifier: BSD-2-Clause */'
+    file tools/plant_more.sh '# SPDX-License''-Identifier: BSD-2-Clause and more'
+    says 'tools/plant_none.c: no licence' 'tools/plant_pieces.c: a licence in pieces' \
+        'bench/plant_behind.h: a licence behind other text' \
+        'tools/plant_more.sh: a licence in pieces'
+}
+
 # Variables, whatever they look like; memory, printing and the end in each folder of the library.
 plant_memory() {
     file ref-decoder/norm/plant.c 'int kept_a;' 'static const char *kept_b = "x;{";' \

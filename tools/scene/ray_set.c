@@ -1,5 +1,6 @@
 /* ray_set.c - writes the pictures of a scene, and the folder. ray_layout.c writes the other files
- * of a layout, and ray_points.c finds its points. SPDX-License-Identifier: BSD-2-Clause */
+ * of a layout, and ray_points.c finds its points.
+ * SPDX-License-Identifier: BSD-2-Clause */
 #include "ray_layout.h"
 #include "ray_picture.h"
 #include "ray_save.h"

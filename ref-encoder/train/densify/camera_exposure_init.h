@@ -1,6 +1,7 @@
 /* camera_exposure_init.h - finds out before training whether the exposures of cameras change over
  * time, each on its own, and what they are, from what each camera sees at the initial points.
- * Source: ours. Depends on trainer.h. SPDX-License-Identifier: BSD-2-Clause */
+ * Source: ours. Depends on trainer.h.
+ * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_CAMERA_EXPOSURE_INIT_H
 #define TED4_CAMERA_EXPOSURE_INIT_H
 

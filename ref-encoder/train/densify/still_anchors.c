@@ -1,7 +1,8 @@
 /* still_anchors.c - finds the anchors whose motion explains nothing, and closes them: see
  * still_anchors.h. What an anchor shows without motion is nearly its Gaussians' mean over time,
  * once training has repaired what does not change over time. So the difference between a Gaussian
- * and its mean is what closing would change. SPDX-License-Identifier: BSD-2-Clause */
+ * and its mean is what closing would change.
+ * SPDX-License-Identifier: BSD-2-Clause */
 #include "still_anchors.h"
 
 #include <math.h>

@@ -5,7 +5,7 @@
 
 #include "train/state/trainer.h"
 
-/* Returns the name of a candidate, e.g. "hidden width of the hyperprior". */
+/* Returns the name of a candidate, e.g. "width of the hyperprior". */
 const char *ted4_candidate_name(ted4_candidate m);
 
 /* ted4_candidate_now returns the current size of what a candidate reduces (such as a width or a

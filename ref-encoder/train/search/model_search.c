@@ -1,8 +1,8 @@
 /* model_search.c - chooses the trials, and the smaller model to take: see model_search.h. First,
  * every candidate is tried untrained, as far as it lowers the cost without any training. The rest
  * of the budget is spent on training: the candidates that promise the lowest cost are trained
- * first, and compared with the current model after the same training. SPDX-License-Identifier:
- * BSD-2-Clause */
+ * first, and compared with the current model after the same training.
+ * SPDX-License-Identifier: BSD-2-Clause */
 #include "model_search.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 /* rd_prune.c - removes anchors and Gaussians that are not worth their bits: see rd_prune.h. The
  * loss of quality by a removal is known only to first order. So several prices of a bit are tried,
- * each on all anchors at once, and the cost of the whole file decides. SPDX-License-Identifier:
- * BSD-2-Clause */
+ * each on all anchors at once, and the cost of the whole file decides.
+ * SPDX-License-Identifier: BSD-2-Clause */
 #include "rd_prune.h"
 
 #include <math.h>

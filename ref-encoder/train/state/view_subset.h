@@ -8,7 +8,7 @@
 
 #include "trainer.h"
 
-/* The number of frames that training pictures show; at least 1. */
+/* The number of frames, also of those that are only held out; at least 1. */
 size_t ted4_view_subset_frames(const ted4_trainer *t);
 
 /* Fills item[n] with n different training pictures (n at most as many as there are), as numbers in

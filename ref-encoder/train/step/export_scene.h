@@ -1,5 +1,6 @@
 /* export_scene.h - converts a trained model to a scene of the file format (spec 6 to 10). Depends
- * on trainer.h, norm/. SPDX-License-Identifier: BSD-2-Clause */
+ * on trainer.h, norm/.
+ * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_EXPORT_SCENE_H
 #define TED4_EXPORT_SCENE_H
 

@@ -1,5 +1,6 @@
 /* loss_terms.c - volume, bank and rate terms of the loss: see loss_terms.h. Source: paper,
- * "Training Objectives"; annex D.1. SPDX-License-Identifier: BSD-2-Clause */
+ * "Training Objectives"; annex D.1.
+ * SPDX-License-Identifier: BSD-2-Clause */
 #include "loss_terms.h"
 
 #include <math.h>

@@ -1,5 +1,6 @@
 /* step.h - one training step: forward and backward pass of the pictures of a batch, all of one
- * time, and the update. Depends on trainer.h. SPDX-License-Identifier: BSD-2-Clause */
+ * time, and the update. Depends on trainer.h.
+ * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_STEP_H
 #define TED4_STEP_H
 
