@@ -122,7 +122,7 @@ int ted4_read_whole(const char *path, uint8_t **bytes, size_t *size, ted4_messag
     return 0;
 }
 
-static double det3(const double A[9])
+double ted4_det3(const double A[9])
 {
     return A[0] * (A[4] * A[8] - A[5] * A[7]) - A[1] * (A[3] * A[8] - A[5] * A[6]) +
            A[2] * (A[3] * A[7] - A[4] * A[6]);
@@ -146,7 +146,7 @@ const char *ted4_rotation_clean(double R[9])
     for (int i = 0; i < 9; i++)
         if (!isfinite(R[i]))
             return "holds a value that is not finite";
-    if (fabs(det3(R)) < TED4_ROTATION_TOLERANCE)
+    if (fabs(ted4_det3(R)) < TED4_ROTATION_TOLERANCE)
         return "is singular, expected a rotation";
     for (int i = 0; i < 3; i++)
         for (int j = i; j < 3; j++) {
@@ -155,12 +155,12 @@ const char *ted4_rotation_clean(double R[9])
             if (fabs(dot - (i == j)) > TED4_ROTATION_TOLERANCE)
                 return "is not orthonormal, expected a rotation";
         }
-    if (det3(R) < 0)
+    if (ted4_det3(R) < 0)
         return "is a mirror image, expected a rotation";
     /* Newton's iteration to the nearest rotation, R <- (R + R^-T) / 2, squares the error in each
      * step: 1e-3, 1e-6, 1e-12, rounding. */
     for (int k = 0; k < 4; k++) {
-        const double d = det3(R);
+        const double d = ted4_det3(R);
         cofactors(R, C);
         for (int i = 0; i < 9; i++)
             R[i] = 0.5 * (R[i] + C[i] / d);
@@ -171,7 +171,7 @@ const char *ted4_rotation_clean(double R[9])
 int ted4_solve3(const double A[9], const double b[3], double x[3])
 {
     double C[9], norm = 0;
-    const double d = det3(A);
+    const double d = ted4_det3(A);
 
     for (int i = 0; i < 9; i++)
         norm = fmax(norm, fabs(A[i]));
@@ -181,6 +181,25 @@ int ted4_solve3(const double A[9], const double b[3], double x[3])
     for (int i = 0; i < 3; i++)
         x[i] = (C[i] * b[0] + C[3 + i] * b[1] + C[6 + i] * b[2]) / d;
     return 0;
+}
+
+double ted4_distance3(const double a[3], const double b[3])
+{
+    const double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
+
+    return sqrt(x * x + y * y + z * z);
+}
+
+int ted4_camera_same(const ted4_camera *a, const ted4_camera *b)
+{
+    int same = a->width == b->width && a->height == b->height && a->fx == b->fx && a->fy == b->fy &&
+               a->cx == b->cx && a->cy == b->cy;
+
+    for (int i = 0; i < 9; i++)
+        same &= a->R[i] == b->R[i];
+    for (int i = 0; i < 3; i++)
+        same &= a->t[i] == b->t[i];
+    return same;
 }
 
 void ted4_pose_centre(const double R[9], const double t[3], double c[3])

@@ -44,10 +44,16 @@ int ted4_read_whole(const char *path, uint8_t **bytes, size_t *size, ted4_messag
  * or a text that says what is wrong with it. */
 const char *ted4_rotation_clean(double R[9]);
 
+/* Returns the determinant of a row-major 3x3 matrix. */
+double ted4_det3(const double A[9]);
 /* Computes x = A^-1 b for a row-major 3x3 matrix. Returns 0, or -1 if A is singular to working
  * precision. */
 int ted4_solve3(const double A[9], const double b[3], double x[3]);
 
+double ted4_distance3(const double a[3], const double b[3]);
+
+/* Are size, lens and pose the same? */
+int ted4_camera_same(const ted4_camera *a, const ted4_camera *b);
 /* Computes c = -R^T t, the camera centre of a world-to-camera pose. */
 void ted4_pose_centre(const double R[9], const double t[3], double c[3]);
 

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 
 #include "data/source.h"
+#include "math/compare.h"
 
 typedef struct {
     uint32_t camera, frame;
@@ -19,13 +20,6 @@ static int compare_appearance(const void *x, const void *y)
     if (a->camera != b->camera)
         return a->camera < b->camera ? -1 : 1;
     return a->frame < b->frame ? -1 : a->frame > b->frame;
-}
-
-static int compare_doubles(const void *x, const void *y)
-{
-    const double a = *(const double *)x, b = *(const double *)y;
-
-    return a < b ? -1 : a > b;
 }
 
 double ted4_dataset_flicker(const ted4_dataset *d)
@@ -44,7 +38,7 @@ double ted4_dataset_flicker(const ted4_dataset *d)
             l[i].frame + 1 == l[i + 1].frame)
             off[m++] = fabs(l[i].level - 0.5 * (l[i - 1].level + l[i + 1].level));
     if (m > 0) {
-        qsort(off, m, sizeof *off, compare_doubles);
+        qsort(off, m, sizeof *off, ted4_compare_doubles);
         median = off[m / 2];
     }
     if (l == NULL || off == NULL)

@@ -12,6 +12,7 @@
 #include "data/colmap_file.h"
 #include "data/data_util.h"
 #include "data/picture_path.h"
+#include "math/compare.h"
 
 /* Returns folder/sparse/0 or folder/sparse, whichever holds cameras.*, or NULL if neither does.
  * Owned by the caller. */
@@ -113,13 +114,6 @@ static int add_image(ted4_raw_scene *s, const ted4_colmap *c, const ted4_colmap_
     return shot->camera == NULL ? ted4_say_no_memory(m) : 0;
 }
 
-static int by_number(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-
-    return (x > y) - (x < y);
-}
-
 /* Replaces each number by its rank, because numbers in names only order the frames. If no name has
  * a number, all pictures are frame 0; names with and without numbers cannot be mixed. */
 static int rank_numbers(ted4_raw_scene *s, ted4_message *m)
@@ -131,12 +125,12 @@ static int rank_numbers(ted4_raw_scene *s, ted4_message *m)
         return ted4_say_no_memory(m);
     for (size_t i = 0; i < s->n_shots; i++)
         v[i] = s->shots[i].time;
-    qsort(v, s->n_shots, sizeof *v, by_number);
+    qsort(v, s->n_shots, sizeof *v, ted4_compare_doubles);
     for (size_t i = 0; i < s->n_shots; i++)
         if (k == 0 || v[i] != v[k - 1])
             v[k++] = v[i];
     for (size_t i = 0; i < s->n_shots; i++) {
-        const double *at = bsearch(&s->shots[i].time, v, k, sizeof *v, by_number);
+        const double *at = bsearch(&s->shots[i].time, v, k, sizeof *v, ted4_compare_doubles);
         s->shots[i].time = (double)(at - v);
     }
     const int mixed = k > 1 && v[0] == -1;

@@ -16,13 +16,6 @@
 #define HOPELESS 3.0
 enum { FEWEST = 2 };
 
-static double distance(const double a[3], const double b[3])
-{
-    const double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
-
-    return sqrt(x * x + y * y + z * z);
-}
-
 static const ted4_picture *picture(const ted4_shown *s, size_t i)
 {
     return &s->data->pictures[s->picture[i]];
@@ -53,7 +46,7 @@ static void choose(ted4_sweep *w, const double (*centre)[3], size_t i, double ap
 
     w->n_helpers[i] = 0;
     for (size_t k = 0; k < w->shown->n; k++) {
-        const double far = distance(centre[i], centre[k]);
+        const double far = ted4_distance3(centre[i], centre[k]);
 
         if (far >= apart &&
             (!same_time || picture(w->shown, i)->frame == picture(w->shown, k)->frame))

@@ -71,20 +71,11 @@ static int crossing(const ted4_dataset *d, size_t n, double x[3])
                 b[r] += v * c[s];
             }
     }
-    /* det A is the product of three eigenvalues whose sum is 2. The smallest is the mean squared
-     * sine of the angles between the axes and their mean. */
-    const double det = A[0] * (A[4] * A[8] - A[5] * A[7]) - A[1] * (A[3] * A[8] - A[5] * A[6]) +
-                       A[2] * (A[3] * A[7] - A[4] * A[6]);
-    if (det < PARALLEL)
+    /* The determinant is the product of three eigenvalues whose sum is 2. The smallest is the mean
+     * squared sine of the angles between the axes and their mean. */
+    if (ted4_det3(A) < PARALLEL)
         return -1;
     return ted4_solve3(A, b, x);
-}
-
-static double distance(const double a[3], const double b[3])
-{
-    const double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
-
-    return sqrt(x * x + y * y + z * z);
 }
 
 static int is_ahead(const ted4_dataset *d, size_t n, const double x[3])
@@ -112,7 +103,7 @@ int ted4_view_box(const ted4_dataset *d, double centre[3], double *half)
     for (size_t i = 0; i < n; i++) {
         const ted4_camera *k = &d->pictures[i].camera;
         ted4_pose_centre(k->R, k->t, c);
-        distances[i] = distance(c, centre);
+        distances[i] = ted4_distance3(c, centre);
     }
     qsort(distances, n, sizeof *distances, ted4_compare_doubles);
     *half = TED4_VIEW_BOX_HALF_SIDE * distances[n / 2];

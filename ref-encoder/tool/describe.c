@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "camera_view.h"
+#include "data/data_util.h"
 #include "render/png_file.h"
 #include "render/view.h"
 #include "ted4.h"
@@ -51,13 +52,6 @@ void ted4_describe_up(const ted4_dataset *d, float up[3])
             up[a] = a == largest ? copysignf(1.0f, up[a]) : 0.0f;
 }
 
-static int same_camera(const ted4_camera *a, const ted4_camera *b)
-{
-    return a->width == b->width && a->height == b->height && a->fx == b->fx && a->fy == b->fy &&
-           a->cx == b->cx && a->cy == b->cy && memcmp(a->R, b->R, sizeof a->R) == 0 &&
-           memcmp(a->t, b->t, sizeof a->t) == 0;
-}
-
 /* first[camera_id]: the first training picture of each camera, n_pictures if there is none.
  * moves[camera_id]: 1 if its pictures were taken from several places. */
 static void find_moving(const ted4_dataset *d, size_t *first, uint8_t *moves)
@@ -71,7 +65,7 @@ static void find_moving(const ted4_dataset *d, size_t *first, uint8_t *moves)
             continue;
         if (first[p->camera_id] == d->n_pictures)
             first[p->camera_id] = i;
-        else if (!same_camera(&d->pictures[first[p->camera_id]].camera, &p->camera))
+        else if (!ted4_camera_same(&d->pictures[first[p->camera_id]].camera, &p->camera))
             moves[p->camera_id] = 1;
     }
 }

@@ -7,17 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int equal(const ted4_camera *a, const ted4_camera *b)
-{
-    int same = a->width == b->width && a->height == b->height && a->fx == b->fx && a->fy == b->fy &&
-               a->cx == b->cx && a->cy == b->cy;
-
-    for (int i = 0; i < 9; i++)
-        same &= a->R[i] == b->R[i];
-    for (int i = 0; i < 3; i++)
-        same &= a->t[i] == b->t[i];
-    return same;
-}
+#include "data/data_util.h"
 
 /* Returns the number of pictures of a camera that stands still, or 0 if it moves. */
 static size_t count_still(const ted4_dataset *d, uint32_t camera)
@@ -30,7 +20,7 @@ static size_t count_still(const ted4_dataset *d, uint32_t camera)
             continue;
         if (first == NULL)
             first = &d->pictures[i].camera;
-        if (!equal(first, &d->pictures[i].camera))
+        if (!ted4_camera_same(first, &d->pictures[i].camera))
             return 0;
         n++;
     }

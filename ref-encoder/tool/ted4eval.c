@@ -7,7 +7,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "align.h"
 #include "belongs.h"
@@ -124,14 +123,6 @@ typedef struct {
     ted4_belongs_sum squares;
 } session;
 
-static double seconds(void)
-{
-    struct timespec t;
-
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 /* main calls ted4_teller_begin once the command line is parsed. */
 static ted4_teller teller = { .lock = PTHREAD_MUTEX_INITIALIZER };
 
@@ -232,7 +223,7 @@ static int open_file(session *s)
     ted4_error e = { TED4_OK, 0 };
     ted4_scene *scene;
     uint8_t *const bytes = ted4_read_file(s->set->input, &s->sum.bytes);
-    const double start = seconds();
+    const double start = ted4_seconds();
 
     if (bytes == NULL) {
         ted4_teller_clear(&teller);
@@ -243,7 +234,7 @@ static int open_file(session *s)
         e.code = ted4_recon_new(&s->recon, scene, &options);
         ted4_scene_free(scene);
     }
-    s->sum.decode_ms = 1e3 * (seconds() - start);
+    s->sum.decode_ms = 1e3 * (ted4_seconds() - start);
     free(bytes);
     ted4_teller_clear(&teller);
     return e.code == TED4_OK ? TED4_EXIT_FINE
@@ -461,9 +452,9 @@ static int evaluate_picture(session *s, size_t i)
 
     if (ours == NULL)
         return failed(p->path, "out of memory");
-    start = seconds();
+    start = ted4_seconds();
     code = draw_picture(s, i, ours);
-    s->sum.render_s += seconds() - start;
+    s->sum.render_s += ted4_seconds() - start;
     if (code == TED4_EXIT_FINE) {
         if ((truth = ted4_dataset_pixels(&s->data, i, &m)) == NULL) {
             code = failed(p->path, m.text);

@@ -52,6 +52,16 @@ static inline size_t ted4_row_floats(size_t n)
     return n * TED4_LANES;
 }
 
+/* Returns the number of weights and biases of a network. */
+static inline size_t ted4_network_size(const ted4_net_shape *s)
+{
+    size_t n = 0;
+
+    for (int i = 0; i < s->n_layers; i++)
+        n += ted4_layer_size(s, (unsigned)i);
+    return n;
+}
+
 /* How values are quantised for estimating the rate. */
 typedef enum {
     TED4_QUANT_NOISE,  /* x + q U, U uniform in [-1/2, 1/2): gradients with respect to x and q */

@@ -66,15 +66,6 @@ double ted4_gradients_norm(const float *x, size_t n)
     return sqrt(squares_of(x, n));
 }
 
-static size_t network_size(const ted4_net_shape *s)
-{
-    size_t n = 0;
-
-    for (int i = 0; i < s->n_layers; i++)
-        n += ted4_layer_size(s, (unsigned)i);
-    return n;
-}
-
 /* A range of the network array. */
 typedef struct {
     size_t first, n;
@@ -90,8 +81,8 @@ static int ranges_of(const ted4_layout *l, int term, range *r)
     if (term == TED4_TERM_HEADS || term == TED4_TERM_MOTION)
         for (int i = 0; i < TED4_NETS_R; i++)
             if ((i == TED4_NET_PROJECT || i == TED4_NET_DEFORM) == (term == TED4_TERM_MOTION))
-                r[n++] =
-                    (range) { l->netr + l->shape.netr[i].first, network_size(&l->shape.netr[i]) };
+                r[n++] = (range) { l->netr + l->shape.netr[i].first,
+                                   ted4_network_size(&l->shape.netr[i]) };
     if (term == TED4_TERM_BANK)
         r[n++] = (range) { l->bank, l->shape.n_bank };
     if (term == TED4_TERM_PRIOR)
@@ -99,7 +90,7 @@ static int ranges_of(const ted4_layout *l, int term, range *r)
     if (term == TED4_TERM_STEP) {
         /* In the last layer: rows of weights, then biases, one per type. */
         const size_t in = h->dim[h->n_layers - 1], types = l->shape.n_types;
-        const size_t end = l->nete + h->first + network_size(h);
+        const size_t end = l->nete + h->first + ted4_network_size(h);
 
         r[n++] = (range) { end - l->shape.n_outputs - types * in, types * in };
         r[n++] = (range) { end - types, types };

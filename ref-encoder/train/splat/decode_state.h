@@ -187,12 +187,7 @@ static inline size_t ted4_gen_colour_grad(const ted4_generator *g)
 /* Returns the number of weights of the colour head. */
 static inline size_t ted4_gen_colour_weights(const ted4_generator *g)
 {
-    const ted4_net_shape *s = &g->layout.shape.netr[TED4_NET_COLOUR];
-    size_t n = 0;
-
-    for (int i = 0; i < s->n_layers; i++)
-        n += ted4_layer_size(s, (unsigned)i);
-    return n;
+    return ted4_network_size(&g->layout.shape.netr[TED4_NET_COLOUR]);
 }
 
 /* Returns the floats of one visible block in the gradients behind colours of a view. */

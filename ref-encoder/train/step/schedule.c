@@ -103,15 +103,6 @@ static double rate_on_weight_grid(const ted4_trainer *t, ted4_weight_grid grid, 
     return t->phase.integer && t->net.bits[grid] < TED4_WEIGHT_GRID_FULL(grid) ? 0 : rate;
 }
 
-static size_t network_size(const ted4_net_shape *s)
-{
-    size_t n = 0;
-
-    for (int i = 0; i < s->n_layers; i++)
-        n += ted4_layer_size(s, (unsigned)i);
-    return n;
-}
-
 static ted4_net_range make_range(const ted4_trainer *t, size_t first, size_t n, double rate)
 {
     return (ted4_net_range) { first, n, (float)(rate * t->monitor.state.factor) };
@@ -134,7 +125,7 @@ int ted4_schedule_network(const ted4_trainer *t, ted4_net_range *range)
         const ted4_net_shape *s = &l->shape.netr[i];
 
         range[n++] =
-            make_range(t, l->netr + s->first, network_size(s),
+            make_range(t, l->netr + s->first, ted4_network_size(s),
                        is_motion ? rate_on_weight_grid(t, TED4_WEIGHT_GRID_MOTION, motion) : heads);
     }
     range[n++] = make_range(t, l->bank, l->shape.n_bank,

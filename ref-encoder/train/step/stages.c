@@ -171,12 +171,9 @@ static void remap_networks(const ted4_layout *from, const ted4_layout *to, const
 {
     for (int i = 0; i < TED4_NETS_R; i++) {
         const ted4_net_shape *s = &to->shape.netr[i];
-        size_t n = 0;
 
-        for (int k = 0; k < s->n_layers; k++)
-            n += ted4_layer_size(s, (unsigned)k);
         memcpy(new + to->netr + s->first, old + from->netr + from->shape.netr[i].first,
-               n * sizeof *new);
+               ted4_network_size(s) * sizeof *new);
     }
     memcpy(new + to->bank, old + from->bank, to->shape.n_bank * sizeof *new);
 }
