@@ -154,10 +154,10 @@ int ted4_shown_read(ted4_shown *s, ted4_dataset *d, ted4_message *m)
     s->data = d;
     choose_pictures(s);
     if (count == NULL || allocate(s) != 0 || read_all(s, m) != 0) {
-        const int read = count == NULL || s->n == 0 || s->bits[s->n - 1] == NULL;
+        const int no_memory = count == NULL || s->n == 0 || s->bits[s->n - 1] == NULL;
 
         free(count);
-        return read ? ted4_say_no_memory(m) : -1;
+        return no_memory ? ted4_say_no_memory(m) : -1;
     }
     for (size_t k = 0; k < s->n; k++)
         count_colours(count, &d->pictures[s->picture[k]].camera, s->rgb[k]);

@@ -7,9 +7,8 @@
 #include "data/data_util.h"
 #include "math/compare.h"
 
-#define PARALLEL                                                                    \
-    1e-4 /* mean squared sine between axes below which their crossing means nothing \
-          */
+/* Mean squared sine between axes below which their crossing means nothing. */
+#define PARALLEL 1e-4
 
 typedef struct {
     double centre[3], forward[3], spread;

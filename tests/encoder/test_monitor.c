@@ -405,7 +405,7 @@ static void test_three_times(void **state)
     assert_true(t.monitor.found);
     assert_int_equal(t.iteration, KEPT + 5);
     assert_non_null(strstr(t.message.text, "value of feature of anchor 9 is not finite at step "
-                                           "255; learning rates were made smaller three times"));
+                                           "255; learning rates were made smaller 3 times"));
     ted4_trainer_finish(&t);
 
     ball_begin(&t, &o, &scene, NULL);

@@ -30,18 +30,17 @@ int ted4_monitor_recover(ted4_trainer *t)
     ted4_monitor *w = &t->monitor;
     const uint64_t rollbacks = w->state.rollbacks, failed = t->iteration;
     const double factor = w->state.factor, seconds = t->seconds;
-    const char *why = w->good.bytes == NULL
-                          ? "there is no good state before it"
-                          : "learning rates were made smaller three times; another --seed, or "
-                            "smaller ones from the start (--set lr_...), may help";
+    const ted4_message m = t->message;
 
     if (!w->found)
         return -1;
-    if (w->good.bytes == NULL || rollbacks == TED4_ROLLBACKS) {
-        const ted4_message m = t->message;
-
-        return ted4_trainer_fail(t, "%.512s; %s", m.text, why);
-    }
+    if (w->good.bytes == NULL)
+        return ted4_trainer_fail(t, "%.512s; there is no good state before it", m.text);
+    if (rollbacks == TED4_ROLLBACKS)
+        return ted4_trainer_fail(t,
+                                 "%.512s; learning rates were made smaller %d times; another "
+                                 "--seed, or smaller ones from the start (--set lr_...), may help",
+                                 m.text, TED4_ROLLBACKS);
     if (ted4_state_restore(t, &w->good) != 0)
         return -1;
     w->found = 0;

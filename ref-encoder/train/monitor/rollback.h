@@ -10,8 +10,8 @@
  * it is an anomaly. */
 int ted4_monitor_begin(ted4_trainer *t);
 /* Call after a step that failed. Restores the last good state, with smaller learning rates, if the
- * failure is an anomaly, if there is such a state, and if this was not done three times already.
- * Returns 0, or -1 with t->message filled. */
+ * failure is an anomaly, if there is such a state, and if this was not done TED4_ROLLBACKS times
+ * (monitor.h) already. Returns 0, or -1 with t->message filled. */
 int ted4_monitor_recover(ted4_trainer *t);
 
 #endif

@@ -44,10 +44,9 @@ typedef struct {
     double factor;      /* factor of all learning rates: 1, halved by each rollback */
     uint64_t rollbacks; /* number of rollbacks so far */
     uint64_t phase;     /* phase of training; a new phase begins with new scales */
-    uint64_t bad_loss,
-        /* Length of the current run of steps in which the loss was too high, or in which too few
-         * Gaussians were on screen. */
-        bad_screen;
+    /* Length of the current run of steps in which the loss was too high, and of that in which too
+     * few Gaussians were on screen. */
+    uint64_t bad_loss, bad_screen;
     /* The usual loss before that run of steps with too few Gaussians on screen, and the part of its
      * mean loss that is summed up so far. */
     double usual_loss, lost;

@@ -47,18 +47,18 @@ typedef enum {
 
 /* One trial. Checkpoints contain this struct as it is in memory. */
 struct ted4_trial {
-    int64_t candidate, from,
-        to;        /* sizes before and after; larger after only for bits of the prior's weights */
+    int64_t candidate;
+    /* Sizes before and after; larger after only for bits of the prior's weights. */
+    int64_t from, to;
     int64_t steps; /* training steps of either model before the comparison; 0: untrained */
     int64_t taken; /* 1 if the changed model was taken */
     ted4_cost before, after;
 };
 
 typedef struct {
-    int probed; /* whether the static test is over (static_test.h) */
-    double
-        probe_loss[2]; /* mean losses of the static test, with time and without; 0: not measured */
-    int decided;       /* the last decision: TED4_DECIDED_... */
+    int probed;               /* whether the static test is over (static_test.h) */
+    double probe_loss[2];     /* mean losses of that test, with time and without; 0: not measured */
+    int decided;              /* the last decision: TED4_DECIDED_... */
     struct ted4_trial *trial; /* owned: all trials so far */
     size_t n_trials;
 } ted4_search;

@@ -69,9 +69,7 @@ typedef struct {
     void *user;              /* borrowed */
     int stopped;
     ted4_busy busy;
-    double spent,
-        /* Training steps of the probe or of the trials: done so far, and upper bound. */
-        budget;
+    double spent, budget; /* training steps of the probe or of the trials: so far; upper bound */
 } ted4_onlooker;
 
 /* Network parameters with their Adam moments. */
