@@ -168,6 +168,25 @@ static int check_alpha(ted4_dataset *d)
     return 0;
 }
 
+/* Warns if no training picture shows anything. Returns 0, or -1 if memory runs out. */
+static int check_shown(ted4_dataset *d)
+{
+    size_t n = 0, black = 0, white = 0;
+
+    for (size_t i = 0; i < d->n_pictures; i++) {
+        if (d->pictures[i].is_test)
+            continue;
+        n++;
+        black += d->sources[i].level == 0;
+        white += d->sources[i].level == 255;
+    }
+    if (n == 0 || (black < n && white < n))
+        return 0;
+    return ted4_text_add(&d->warnings, &d->n_warnings,
+                         "all training pictures are %s: there is nothing to learn from them",
+                         black == n ? "black" : "white");
+}
+
 int ted4_dataset_verify(ted4_dataset *d, const ted4_parallel *p, ted4_message *m)
 {
     verification v = { .d = d, .bad = d->n_pictures, .m = m };
@@ -181,7 +200,7 @@ int ted4_dataset_verify(ted4_dataset *d, const ted4_parallel *p, ted4_message *m
     for (size_t i = 0; i < d->n_pictures; i++)
         d->content =
             XXH3_64bits_withSeed(&d->sources[i].digest, sizeof d->sources[i].digest, d->content);
-    return check_alpha(d) == 0 ? 0 : ted4_say_no_memory(m);
+    return check_alpha(d) == 0 && check_shown(d) == 0 ? 0 : ted4_say_no_memory(m);
 }
 
 static uint64_t add(uint64_t digest, const void *p, size_t size)

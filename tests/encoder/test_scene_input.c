@@ -329,6 +329,42 @@ static void test_verify(void **state)
     tiny_free(&f);
 }
 
+/* Pictures that show nothing at all are told of before they are trained on. */
+static void test_nothing_shown(void **state)
+{
+    static const struct {
+        uint8_t train, test; /* all bytes of a training and of a held-out picture */
+        const char *warning;
+    } cases[] = { { 0, 9, "all training pictures are black" },
+                  { 255, 9, "all training pictures are white" },
+                  { 9, 0, NULL } };
+    uint8_t px[TINY_W * TINY_H * 3];
+    tiny_folder f = tiny_new();
+
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        ted4_dataset d;
+        ted4_message m;
+
+        write_scene(&f, "\"train_filenames\": [\"0.png\",\"1.png\"], \"test_filenames\": "
+                        "[\"7.png\"],");
+        for (int k = 0; k < N; k++) {
+            char name[16];
+
+            snprintf(name, sizeof name, "%d.png", k);
+            memset(px, k < 2 ? cases[i].train : cases[i].test, sizeof px);
+            tiny_png(&f, name, TINY_W, TINY_H, PNG_FORMAT_RGB, px);
+        }
+        assert_string_equal(tiny_load(&d, &f, &tiny_options), "");
+        assert_int_equal(ted4_dataset_verify(&d, NULL, &m), 0);
+        assert_int_equal(d.n_warnings, cases[i].warning != NULL);
+        if (cases[i].warning != NULL)
+            assert_non_null(strstr(d.warnings[0], cases[i].warning));
+        ted4_dataset_free(&d);
+    }
+    tiny_free(&f);
+}
+
 static uint64_t digest(const tiny_folder *f, int downscale, int verify)
 {
     ted4_dataset_options o = tiny_options;
@@ -412,7 +448,7 @@ int main(void)
         cmocka_unit_test(test_four_colours),   cmocka_unit_test(test_lists),
         cmocka_unit_test(test_max_frames),     cmocka_unit_test(test_changed),
         cmocka_unit_test(test_verify),         cmocka_unit_test(test_digest),
-        cmocka_unit_test(test_digest_of_lens),
+        cmocka_unit_test(test_digest_of_lens), cmocka_unit_test(test_nothing_shown),
     };
 
     return cmocka_run_group_tests_name("scene input", tests, NULL, NULL);
