@@ -1,4 +1,4 @@
-/* picture_out.h - a picture as a PNG file. Uses output.h, render/png_file.h.
+/* picture_out.h - a picture as a PNG file. Uses output.h and libpng.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_PICTURE_OUT_H
 #define TED4_PICTURE_OUT_H
