@@ -16,7 +16,8 @@ extern "C" {
 #endif
 
 #define TED4_VERSION      "0.2.0-dev"
-#define TED4_SPEC_VERSION "1.0"
+/* The versions of the specification that are followed: 1.0 has profile Main, 1.1 Compact, too. */
+#define TED4_SPEC_VERSION "1.0 and draft 1.1"
 
 /* The source of all memory; if alloc is NULL, malloc and free are used. alloc(user, size) returns
  * size bytes aligned for any type, or NULL if memory ran out. free(user, block) releases such a

@@ -22,8 +22,8 @@ from reconstruct import Anchors, Query, records
 from verdict import Refusal
 from xxh3 import xxh3_128
 
-CAPABILITIES = {"protocol": 1, "name": "ted4-reader", "version": "1.0", "spec": "1.0",
-                "profiles": ["Main", "Compact"], "max_level": 2,
+CAPABILITIES = {"protocol": 1, "name": "ted4-reader", "version": "1.0",
+                "spec": "1.0 and draft 1.1", "profiles": ["Main", "Compact"], "max_level": 2,
                 "tiers": ["T0", "T1", "T2", "T3", "T4", "T5"], "class": "X", "strict": True,
                 "declines": [], "knobs": ["max_alloc_total", "max_work"]}
 

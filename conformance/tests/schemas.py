@@ -22,6 +22,7 @@ import xml.etree.ElementTree
 SUITE = "conformance"
 SCHEMAS = os.path.join(SUITE, "schema")
 BUILD = os.environ.get("TED4_BUILD", "build")
+SPEC = "1.0 and draft 1.1"                      # of decoders that have both profiles
 MOST_BYTES = 10000000                           # of all files of the folder
 MADE = r"/(generated|__pycache__)\b"             # folders that programs make in it
 TYPES = {
@@ -206,6 +207,8 @@ def answers():
         holds(capabilities, said, "capabilities of %s" % command[-1])
         require(capabilities.check(dict(said, protocol=0))
                 and capabilities.check(dict(said, max_level=32)), "other capabilities pass")
+        require(said["profiles"] == ["Main", "Compact"] and said["spec"] == SPEC,
+                "%s: profiles or specification" % command[-1])
     wanted = {"worked/WRK-dynamic": "valid", "invalid/container/NEG-magic-0": "invalid",
               "tolerant/TOL-three-1": "invalid",
               "limit/LIM-bank-60000": "limit", "invalid/container/NEG-profile-2": "unsupported"}

@@ -6,9 +6,9 @@ import { readFileSync } from "node:fs";
 import { Decoder, Ted4Error } from "../src/decoder.js";
 
 const CAPABILITIES = {
-  protocol: 1, name: "ted4.wasm", version: "0.2.0-dev", spec: "1.0", profiles: ["Main"],
-  max_level: 31, tiers: ["T0", "T1", "T2", "T3", "T4", "T5"], class: "X", strict: true,
-  lenient: true, declines: [], knobs: ["max_alloc_total", "max_work"],
+  protocol: 1, name: "ted4.wasm", version: "0.2.0-dev", spec: "1.0 and draft 1.1",
+  profiles: ["Main", "Compact"], max_level: 31, tiers: ["T0", "T1", "T2", "T3", "T4", "T5"],
+  class: "X", strict: true, lenient: true, declines: [], knobs: ["max_alloc_total", "max_work"],
 };
 
 function parse(words) {

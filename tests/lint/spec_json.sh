@@ -4,10 +4,12 @@
 # prints one of them.
 export LC_ALL=C
 print_json() {
-    case $1 in
-    rules) awk -v json=1 -f tests/spec/rules.awk spec/[0-9]*.md spec/annex-[e-f]*.md \
+    which=$1
+    set -- -v spec="$(sed -n 's/^#define TED4_SPEC_VERSION *"\(.*\)"$/\1/p' ref-decoder/ted4.h)"
+    case $which in
+    rules) awk "$@" -v json=1 -f tests/spec/rules.awk spec/[0-9]*.md spec/annex-[e-f]*.md \
         spec/annex-[j-m]*.md ;;
-    errors) awk -f tests/spec/errors.awk spec/annex-g-rules.md ref-decoder/base/status.def ;;
+    errors) awk "$@" -f tests/spec/errors.awk spec/annex-g-rules.md ref-decoder/base/status.def ;;
     esac
 }
 if [ "$1" = print ]; then print_json "$2"; exit 0; fi

@@ -1,8 +1,8 @@
 # errors.awk - spec/errors.json: the identifiers of status.def, with what each means for the verdict
 # (14.1) and the rules of annex G that name it. Reads spec/annex-g-rules.md, then
-# ref-decoder/base/status.def.
+# ref-decoder/base/status.def. -v spec=: the versions of the specification.
 # SPDX-License-Identifier: BSD-2-Clause
-BEGIN { print "{\"spec\":\"1.0\",\"license\":\"CC-BY-4.0\",\"errors\":[" }
+BEGIN { print "{\"spec\":\"" spec "\",\"license\":\"CC-BY-4.0\",\"errors\":[" }
 
 /^\| R-/ {
     split($0, column, / *\| */)

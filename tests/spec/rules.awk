@@ -1,6 +1,6 @@
 # rules.awk - annex G: every rule of the chapters and annexes named, in order of appearance. A rule
 # begins a paragraph with its identifier in bold and ends with it. With -v json=1 spec/rules.json:
-# the same, with file and text of each.
+# the same, with file and text of each; -v spec=, the versions of the specification.
 # SPDX-License-Identifier: BSD-2-Clause
 BEGIN {
     split("BIT bitstream DEC decoder LEN lenient-decoder ENC encoder EDT editor VAL validator " \
@@ -9,7 +9,7 @@ BEGIN {
     for (i = 1; i in pair; i += 2)
         whom[pair[i]] = pair[i + 1]
     if (json)
-        print "{\"spec\":\"1.0\",\"license\":\"CC-BY-4.0\",\"rules\":["
+        print "{\"spec\":\"" spec "\",\"license\":\"CC-BY-4.0\",\"rules\":["
     else
         heading()
 }
