@@ -65,7 +65,7 @@ what_from() {
     judge="conformance/tool/judge.c conformance/tool/judge.h conformance/tool/process.h
         conformance/tool/suite.h"
     headers=$(for f in answer text; do echo "conformance/tool/$f.h"; done
-        for f in contract tier_hash sha256 cli json_file json_string; do
+        for f in contract tier_hash record sha256 cli json_file json_string; do
             echo "ref-decoder/tool/$f.h"
         done)
     # Of zlib what works on bytes in memory.

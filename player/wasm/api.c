@@ -6,13 +6,11 @@
 #include <stdlib.h>
 #include <string.h>
 #include <xxhash.h>
-#include "base/bytes.h"
 #include "ted4.h"
 #include "tool/budget.h"
+#include "tool/record.h"
 
 #define EXPORT(name) __attribute__((export_name(#name), used)) name
-
-enum { RECORD_VALUES = 14 };
 
 static ted4_scene *scene;
 static ted4_recon *recon;
@@ -178,17 +176,13 @@ const void *EXPORT(ted4_wasm_tier)(int number, const void *data, size_t size, do
 const void *EXPORT(ted4_wasm_records)(void)
 {
     const ted4_gaussians *g = &gaussians;
-    const float *const channel[RECORD_VALUES] = {
-        g->mean[0], g->mean[1], g->mean[2], g->scale[0], g->scale[1],  g->scale[2],  g->rot[0],
-        g->rot[1],  g->rot[2],  g->rot[3],  g->opacity,  g->colour[0], g->colour[1], g->colour[2]
-    };
+    const float *const column[TED4_RECORD_FLOATS] = TED4_RECORD_COLUMNS(g);
 
     begin_tier();
     for (size_t i = 0; i < g->n; i++) {
-        uint8_t record[4 * RECORD_VALUES];
+        uint8_t record[4 * TED4_RECORD_FLOATS];
 
-        for (size_t c = 0; c < RECORD_VALUES; c++)
-            ted4_store32(record + 4 * c, ted4_float_bits(channel[c][i]));
+        ted4_record_store(record, column, i);
         add(NULL, record, sizeof record);
     }
     return end_tier();

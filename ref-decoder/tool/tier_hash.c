@@ -5,10 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 #include <xxhash.h>
-#include "base/bytes.h"
+#include "record.h"
 #include "sha256.h"
 
-enum { BUFFER = 1 << 14, VALUES = 14 };
+enum { BUFFER = 1 << 14 };
 
 struct ted4_tier_hash {
     FILE *keep;
@@ -86,16 +86,12 @@ json_t *ted4_tier_hash_end(ted4_tier_hash *h)
 
 void ted4_tier_records(const ted4_gaussians *g, ted4_sink *sink, void *user)
 {
-    const float *const channel[VALUES] = { g->mean[0],   g->mean[1],  g->mean[2], g->scale[0],
-                                           g->scale[1],  g->scale[2], g->rot[0],  g->rot[1],
-                                           g->rot[2],    g->rot[3],   g->opacity, g->colour[0],
-                                           g->colour[1], g->colour[2] };
+    const float *const column[TED4_RECORD_FLOATS] = TED4_RECORD_COLUMNS(g);
 
     for (size_t i = 0; i < g->n; i++) {
-        uint8_t record[4 * VALUES];
+        uint8_t record[4 * TED4_RECORD_FLOATS];
 
-        for (size_t c = 0; c < VALUES; c++)
-            ted4_store32(record + 4 * c, ted4_float_bits(channel[c][i]));
+        ted4_record_store(record, column, i);
         sink(user, record, sizeof record);
     }
 }
