@@ -6,7 +6,7 @@
 #include <string.h>
 #include "eval/metrics.h"
 #include "lab_facts.h"
-#include "tool/picture_out.h"
+#include "render/png_file.h"
 #include "tool/cli.h"
 #include "tool/sheet.h"
 #include "train/model/normalise.h"
@@ -96,8 +96,8 @@ static int write_strip(lab_session *s, const view_work *w, const char *path)
     ted4_sheet_put(&sheet, 0, truth, w->worst);
     ted4_dataset_release(&s->data, w->worst_item);
 
-    const int bad = ted4_picture_write(path, c->width * TED4_SHEET_COLUMNS, c->height, sheet.rgb,
-                                       why, sizeof why);
+    const int bad =
+        ted4_png_write(path, c->width * TED4_SHEET_COLUMNS, c->height, sheet.rgb, why, sizeof why);
 
     ted4_sheet_finish(&sheet);
     return bad ? lab_failed(path, why) : TED4_EXIT_FINE;

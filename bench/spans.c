@@ -20,7 +20,7 @@
 #include "base/bytes.h"
 #include "norm/syntax.h"
 #include "norm/tables.h"
-#include "tool/picture_out.h"
+#include "render/png_file.h"
 #include "open_decoded.h"
 #include "spans.h"
 #include "tool/cli.h"
@@ -109,8 +109,8 @@ static int draw(session *s, const char *path)
 
     if (code != TED4_EXIT_FINE)
         return code;
-    return ted4_picture_write(path, s->width * COLUMNS, 2 * s->height + STRIP, s->picture, why,
-                              sizeof why) == 0
+    return ted4_png_write(path, s->width * COLUMNS, 2 * s->height + STRIP, s->picture, why,
+                          sizeof why) == 0
                ? TED4_EXIT_FINE
                : failed(path, why);
 }

@@ -1,11 +1,13 @@
-/* png_file.c - see png_file.h. The simplified interface of libpng does not need setjmp.
+/* png_file.c - writes PNG files with libpng, each under a temporary name at first.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "render/png_file.h"
 
+#include <errno.h>
 #include <png.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static png_image describe(int width, int height)
 {
@@ -23,14 +25,59 @@ uint8_t *ted4_png_encode(int width, int height, const uint8_t *rgb, size_t *size
                          size_t why_size)
 {
     png_image p = describe(width, height);
-    png_alloc_size_t n = PNG_IMAGE_PNG_SIZE_MAX(p); /* the exact size would take encoding twice */
-    uint8_t *const png = malloc(n);
+    png_alloc_size_t n = 0;
+    uint8_t *png = NULL;
 
-    if (png != NULL && png_image_write_to_memory(&p, png, &n, 0, rgb, 0, NULL)) {
+    if (png_image_write_get_memory_size(p, n, 0, rgb, 0, NULL) && (png = malloc(n)) != NULL &&
+        png_image_write_to_memory(&p, png, &n, 0, rgb, 0, NULL)) {
         *size = n;
         return png;
     }
     snprintf(why, why_size, "PNG: %s", p.message[0] != '\0' ? p.message : "out of memory");
     free(png);
     return NULL;
+}
+
+/* Writes to an open file with libpng's simplified interface, which does not need setjmp. Returns 0,
+ * or -1 with a message in why. */
+static int write_png(FILE *f, int width, int height, const uint8_t *rgb, char *why, size_t why_size)
+{
+    png_image p = describe(width, height);
+
+    if (png_image_write_to_stdio(&p, f, 0, rgb, 0, NULL))
+        return 0;
+    snprintf(why, why_size, "PNG: %s", p.message);
+    return -1;
+}
+
+int ted4_png_write(const char *path, int width, int height, const uint8_t *rgb, char *why,
+                   size_t why_size)
+{
+    const size_t capacity = strlen(path) + 32;
+    char *temporary = malloc(capacity);
+
+    if (temporary == NULL) {
+        snprintf(why, why_size, "out of memory");
+        return -1;
+    }
+    snprintf(temporary, capacity, "%s.%ld.tmp", path, (long)getpid());
+    FILE *f = fopen(temporary, "wb");
+    int result = -1;
+    if (f == NULL) {
+        snprintf(why, why_size, "%s", strerror(errno));
+    } else {
+        result = write_png(f, width, height, rgb, why, why_size);
+        if (fclose(f) != 0 && result == 0) {
+            snprintf(why, why_size, "%s", strerror(errno));
+            result = -1;
+        }
+        if (result == 0 && rename(temporary, path) != 0) {
+            snprintf(why, why_size, "%s", strerror(errno));
+            result = -1;
+        }
+        if (result != 0)
+            remove(temporary);
+    }
+    free(temporary);
+    return result;
 }

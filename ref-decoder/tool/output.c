@@ -110,16 +110,6 @@ int ted4_output_close(ted4_output *o)
     return -1;
 }
 
-int ted4_output_write(const char *path, const void *data, size_t size)
-{
-    ted4_output o;
-
-    if (ted4_output_open(&o, path) != 0)
-        return -1;
-    fwrite(data, 1, size, o.file);
-    return ted4_output_close(&o);
-}
-
 int ted4_output_is_stdout(const char *path)
 {
     return strcmp(path, "-") == 0;

@@ -26,8 +26,6 @@ int ted4_output_open(ted4_output *o, const char *path);
 int ted4_output_close(ted4_output *o);
 /* Closes and removes the temporary file. errno is preserved. */
 void ted4_output_cancel(ted4_output *o);
-/* All of a file at once. Returns 0, or -1 with errno set. */
-int ted4_output_write(const char *path, const void *data, size_t size);
 
 /* Returns 1 if path is "-", which stands for standard output. */
 int ted4_output_is_stdout(const char *path);

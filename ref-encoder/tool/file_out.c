@@ -40,9 +40,14 @@ int ted4_file_writable(const char *path, int force, const char *instead, char *w
 
 int ted4_file_write(const char *path, const void *data, size_t size, char *why, size_t why_size)
 {
-    const int result = ted4_output_write(path, data, size);
+    ted4_output o;
+    int bad = ted4_output_open(&o, path) != 0;
 
-    if (result != 0)
+    if (!bad) {
+        fwrite(data, 1, size, o.file);
+        bad = ted4_output_close(&o) != 0;
+    }
+    if (bad)
         snprintf(why, why_size, "%s: %s", path, strerror(errno));
-    return result;
+    return bad ? -1 : 0;
 }

@@ -1,6 +1,6 @@
-/* test_image_file.c - decoding of picture files, the writer of tool/picture_out.c, lens
- * undistortion against an analytic pattern, and the image cache. SPDX-License-Identifier:
- * BSD-2-Clause */
+/* test_image_file.c - decoding of picture files, the writer of render/png_file.c, lens undistortion
+ * against an analytic pattern, and the image cache.
+ * SPDX-License-Identifier: BSD-2-Clause */
 #include <errno.h>
 #include <math.h>
 #include <pthread.h>
@@ -13,7 +13,7 @@
 #include "data/image_file.h"
 #include "data/undistort.h"
 #include "random_source.h"
-#include "tool/picture_out.h"
+#include "render/png_file.h"
 #include "tiny_scene.h"
 
 /* Writes a PNG of any colour type (plus 8: the first palette entry is transparent) and depth; rows
@@ -101,13 +101,13 @@ static void test_png_write(void **state)
 
     for (size_t i = 0; i < sizeof px; i++)
         px[i] = (uint8_t)(i * 37);
-    assert_int_equal(ted4_picture_write(tiny_path(&f, "out.png"), 5, 4, px, why, sizeof why), 0);
+    assert_int_equal(ted4_png_write(tiny_path(&f, "out.png"), 5, 4, px, why, sizeof why), 0);
     expect_image(tiny_path(&f, "out.png"), 5, 4, 3, px);
-    assert_int_equal(ted4_picture_write("/nonexistent/out.png", 5, 4, px, why, sizeof why), -1);
+    assert_int_equal(ted4_png_write("/nonexistent/out.png", 5, 4, px, why, sizeof why), -1);
     assert_string_equal(why, strerror(ENOENT));
     /* The target is a folder, so the rename fails, and no temporary file may remain. */
     tiny_text(&f, "folder/x", "");
-    assert_int_equal(ted4_picture_write(tiny_path(&f, "folder"), 5, 4, px, why, sizeof why), -1);
+    assert_int_equal(ted4_png_write(tiny_path(&f, "folder"), 5, 4, px, why, sizeof why), -1);
     remove(tiny_path(&f, "folder/x"));
     remove(tiny_path(&f, "folder"));
     remove(tiny_path(&f, "out.png"));

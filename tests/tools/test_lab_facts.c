@@ -6,7 +6,7 @@
 #include "bench/lab_facts.h"
 #include "ball_scene.h"
 #include "random_scene.h"
-#include "tool/picture_out.h"
+#include "render/png_file.h"
 #include "train/model/normalise.h"
 
 /* Error function of the measuring files; no error may occur here. */
@@ -143,7 +143,7 @@ static size_t show(lab_session *s, const ted4_picture *p, ted4_viewer *viewer, i
         if (wrong)
             rgb[k] = (uint8_t)(rgb[k] < 255 ? rgb[k] + 1 : 254);
     }
-    assert_int_equal(ted4_picture_write(p->path, BALL_W, BALL_H, rgb, why, sizeof why), 0);
+    assert_int_equal(ted4_png_write(p->path, BALL_W, BALL_H, rgb, why, sizeof why), 0);
     return edges;
 }
 

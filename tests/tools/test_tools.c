@@ -10,7 +10,7 @@
 #include <xxhash.h>
 
 #include "data/image_file.h"
-#include "tool/picture_out.h"
+#include "render/png_file.h"
 #include "render/view.h"
 #include "tool_files.h"
 #include "tool/sh.h"
@@ -482,7 +482,7 @@ static void test_eval(void **state)
             rgb[k] = (uint8_t)(rgb[k] < 255 ? rgb[k] + 1 : 254);
         snprintf(name, sizeof name, "scene/p%d.png", i);
         path_of(path, name);
-        assert_int_equal(ted4_picture_write(path, WIDTH, HEIGHT, rgb, why, sizeof why), 0);
+        assert_int_equal(ted4_png_write(path, WIDTH, HEIGHT, rgb, why, sizeof why), 0);
         free(rgb);
     }
     write_scene_file("scene/transforms_train.json");
