@@ -11,9 +11,9 @@
 STATES: a file of lines "STATE TAG", which the script that makes the rows prints with --list; that
 script is asked without it. Environment: TED4_RESULTS (bench: where the rows lie and the pages go),
 TED4_TABLE (the table of wanted runs), TED4_PAGES (bench: where the report finds raster.md,
-render.md, train.md, memory.md and report-notes.md), TED4_NOTES (the notes of stability and zoo).
-Run from the project's root. The same rows give the same bytes. Nothing is replaced before all is
-written; then each file is replaced whole. A kill between these renames leaves some files old.
+render.md, train.md, memory.md and report-notes.md), TED4_NOTES (the notes of capacity, stability
+or zoo). Run from the project's root. The same rows give the same bytes. Nothing is replaced before
+all is written; then each file is replaced whole. A kill between these renames leaves some old.
 SPDX-License-Identifier: BSD-2-Clause"""
 import glob
 import importlib

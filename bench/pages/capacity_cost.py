@@ -43,6 +43,14 @@ def head_weights(run):
             + chain(feature + 3 * (view > 0), layers, width, 3 * offsets))
 
 
+def weight_bits(run):
+    """Bits of the file for a weight of the networks of reconstruction or a value of the bank; None
+    without a row."""
+    weights = (motion_weights(run) + head_weights(run)
+               + run.count("bank_rows") * run.count("bank_dim"))
+    return 8 * (run.count("b_netr") + run.count("b_bank")) / weights if run.has() else None
+
+
 def temporal(run):
     """Bytes that a file has because things move, come or go: bank, temporal features, activations,
     and the networks' share."""

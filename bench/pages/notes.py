@@ -1,4 +1,4 @@
-"""Causes written by hand: bench/stability-notes.md and bench/zoo-notes.md.
+"""Causes written by hand: bench/{capacity,stability,zoo}-notes.md.
 SPDX-License-Identifier: BSD-2-Clause"""
 
 

@@ -6,8 +6,8 @@
 set -u
 . tests/support/speak.sh
 need capacity_page python3
-make_page() { TED4_RESULTS=$out TED4_TABLE=$out/table.txt python3 -m bench.pages capacity \
-    "$out/states"; }
+make_page() { TED4_RESULTS=$out TED4_TABLE=$out/table.txt TED4_NOTES=$out/notes.md \
+    python3 -m bench.pages capacity "$out/states"; }
 page=$out/capacity.md
 
 cat >"$out/table.txt" <<END
@@ -55,6 +55,8 @@ table() {
 feature_dim,motion,phi_dim,activation,anchors,cpu_s"
     awk '{ print $1 ",k,o,0.0019," $2 "," $3 ",1," $4 ",0," $5 ",0,0,1,10," $6 ",0,0,100," $7 }'
 }
+printf '%s\n' "first line" "## chair" "Because it" "is so." "## search" "It can do that." \
+    >"$out/notes.md"
 printf '%s\n' name,measured,met,commit 'cost_six_cameras,1 of 2 scenes,no,abc' >"$out/earlier.csv"
 rows 150 | table >"$out/capacity.csv"
 sed '1d; s/\([^,]*\),.*/done \1/' "$out/capacity.csv" >"$out/states"
@@ -71,6 +73,19 @@ check chair "$page" \
     '| 20 bytes for time; 1000 bytes at 30.00 dB, small 750 at 30.00 dB | **missed** |'
 check moment "$page" \
     '| 0 bytes for time; 1000 bytes at 30.00 dB, small 950 at 29.95 dB | **missed** |'
+check misses "$page" \
+    '* chair (+14.3 % above *small*): Because it is so.' 'It can do that.' 'No attempt has been'
+printf '%s\n' "## still" "Never shown." "## attempt four trials" "It gains nothing." \
+    >>"$out/notes.md"
+sed -i '/^moment-auto-1/s/,0.01,/,0.0102,/' "$out/capacity.csv"
+make_page || fail page "status $?"
+check attempts "$page" '* *four trials*: It gains nothing.' \
+    '* moment (+3.1 % above *small*; seeds: +3.1, +5.1 %): **not explained yet**'
+grep -q 'No attempt\|Never shown' "$page" && fail no_attempt "$(grep 'No att\|Never' "$page")" ||
+    ok no_attempt
+sed -i '/^moment-auto-1/s/,0.0102,/,0.01,/' "$out/capacity.csv"
+make_page || fail page "status $?"
+check settings "$page" '* *small*' '(`--set offsets=4`)' '* *auto*'
 check means "$page" '| things2 | 2 | 1250 | 220 |'
 check things "$page" '| 0, 100, 220, 150, 400 | **missed**; as first defined: **missed** |' \
     '| **missed** | the same, of seed 1 alone | 0, 100, 200, 150, 400 | **missed** |'
@@ -82,6 +97,15 @@ make_page || fail page "status $?"
 check more_and_more "$page" '| 0, 100, 220, 300, 400 | met; as first defined: met |'
 check part "$page" '| 1 of 3 scenes; most: still -4.8 % | not run yet |' \
     'whole 2000 at 30.00 dB | not run yet |'
+
+# Rows of two encoders are not compared, and older ones are marked.
+rows 150 | table >"$out/capacity.csv"
+sed -i 's/^done \(chair-small.*\)/older \1/; s/^done \(still.*\)/older \1/' "$out/states"
+make_page || fail page "status $?"
+check two_encoders "$page" \
+    '| 2 of 3 scenes; most: moment +2.0 %†; rows of two encoders: chair | cannot be said; as first' \
+    '| 0 bytes for time; 1000 bytes at 30.00 dB, whole 1500 at 30.00 dB† | met |' \
+    'small 750 at 30.00 dB†; the rows are of two encoders | cannot be said |'
 rm "$out/capacity.csv"
 : >"$out/states"
 make_page || fail empty "status $?"
