@@ -69,6 +69,7 @@ def write(runs, charts, results, _):
     beside.parts_section(lab)
     beside.colours_section(lab)
     tables.numbers_section(lab)
+    tables.seeds_section(lab, MOST_SEED_SPREAD)
     tables.strip_section(lab)
     tables.command_section(lab)
     run_bars(lab)

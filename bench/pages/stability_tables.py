@@ -134,6 +134,30 @@ def failure_section(lab):
                 page.prose(f"Of what no longer fails, on {scene}: {lab.note(scene, variant)}")
 
 
+def seeds_section(lab, most):
+    """The seeds of easy scenes, with a note on those farther apart than the bar's most, dB."""
+    easy = [lab.cell(scene, "whole") for scene in lab.in_group("easy")]
+    if not any(cell.there for cell in easy):
+        return
+    page = lab.page
+    page.heading("Seeds of easy scenes")
+    page.prose("""These are the runs of bar 3, with the worst held-out picture and its camera.
+        *Loss* is the one at the last line of the log, as above.""")
+    page.table("scene", "seed", "PSNR", "worst (camera)", "bytes", "anchors", "moving", "Gaussians",
+               "loss")
+    for cell in easy:
+        for run in cell.there:
+            page.row(run.scene + mark([run]), run.place, fixed(run.number("psnr"), 2),
+                     f"{fixed(run.number('worst'), 2)} ({run.text('worst_camera')})",
+                     *cells(run, "bytes anchors dynamic gaussians loss_last:4"))
+    apart = [cell for cell in easy if (cell.spread() or 0) >= most]
+    if apart:
+        page.say()
+    for cell in apart:
+        page.item(f"{cell.scene}, {cell.spread():.2f} dB apart: "
+                  + lab.notes.get(f"{cell.scene} seeds", "**not explained yet**"))
+
+
 def strip_section(lab):
     page = lab.page
     page.heading("Worst frames")
