@@ -151,7 +151,7 @@ demo:
 	@TED4_BUILD="$(abspath $B)" sh tools/demo.sh out/demo
 
 lint:
-	@for l in tests/lint/*.sh; do sh $$l || exit 1; done
+	@unset POSIXLY_CORRECT; for l in tests/lint/*.sh; do LC_ALL=C sh $$l || exit 1; done
 
 # Both compilers, warnings as errors.
 BOTH = build-gcc build-clang

@@ -2,6 +2,31 @@
 # Runs test programs; prints each one's name, its failures, and totals. Exit status: did all pass?
 # cmocka's own report goes to a log beside the program, shown only when it failed or skipped
 # something.
+# Numbers and ranges of letters are read as the programs write them, and options may follow
+# arguments.
+export LC_ALL=C
+unset POSIXLY_CORRECT
+
+# suits FOLDER: tests can make their programs below it and run them, and its path is one word.
+suits() {
+    case $1 in *[[:space:]]*) return 1 ;; esac
+    trial=$(mktemp "$1/ted4-run-XXXXXX") || return 1
+    printf '#!/bin/sh\nexit 0\n' >"$trial"
+    chmod +x "$trial"
+    "$trial"
+    can=$?
+    rm -f "$trial"
+    return $can
+}
+if ! suits "${TMPDIR:-/tmp}" 2>/dev/null; then
+    own=$(mktemp -d "${TED4_BUILD:-$(pwd)}/tmp-XXXXXX") || exit 1
+    trap 'rm -rf "$own"' EXIT
+    trap 'exit 130' INT
+    trap 'exit 143' TERM
+    echo "temporary files are made in $own: ${TMPDIR:-/tmp} runs no programs, or has a space"
+    export TMPDIR="$own"
+fi
+
 passed=0 failed=0 skipped=0
 for t in "$@"; do
     printf '%s ... ' "$(basename "$t")"

@@ -7,6 +7,7 @@ set -u
 LC_ALL=C; export LC_ALL
 . tests/support/speak.sh
 command -v mpirun >/dev/null || { skip ranks "there is no mpirun (make deps-mpi)"; exit 0; }
+pkg-config --exists ompi-c || { skip ranks "there is no Open MPI (make deps-mpi)"; exit 0; }
 need ranks ted4enc ted4enc-mpi ted4scene python3
 [ -d "$out" ] || exit 1
 # Ranks may be more than cores; as root only where there is nobody else to be.

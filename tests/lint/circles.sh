@@ -2,6 +2,7 @@
 # Calls within ref-encoder/train lead downwards only. Its floors are named here, lowest first;
 # folders of one floor, joined by +, do not call each other. No circle of calls has more than two
 # files, there or in any other folder of sources.
+export LC_ALL=C
 bad=0
 python3 tests/lint/circles.py ref-encoder/train \
     math,model,splat+raster+loss+rate+pose,state,densify+resize,monitor,step,search,. || bad=1

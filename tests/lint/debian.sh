@@ -1,6 +1,7 @@
 #!/bin/sh
 # debian/changelog has the version of ref-decoder/ted4.h ("~dev" sorts before the release), and what
 # debian/*.docs and *.examples name exists.
+export LC_ALL=C
 bad=0
 version=$(sed -n 's/^#define TED4_VERSION *"\(.*\)"$/\1/p' ref-decoder/ted4.h | sed 's/-dev/~dev/')
 debian=$(sed -n '1s/.*(\(.*\)).*/\1/p' debian/changelog)

@@ -1,6 +1,7 @@
 #!/bin/sh
 # The table of identifiers in chapter 14 is status.def, entry for entry. `sh tests/lint/errors.sh
 # print` prints the table to paste.
+export LC_ALL=C
 table() {
     sed -n '/^TED4_STATUS(E_/{
         N

@@ -2,6 +2,7 @@
 # The dialect of C is that of .clang-format, by clang-format 14: other versions break lines
 # elsewhere. Without it this lint says so and passes. What a program prints (tables.c) stays as it
 # is printed.
+export LC_ALL=C
 command -v clang-format-14 >/dev/null ||
     { echo "format.sh: skipped, no clang-format-14 (make deps-dev)"; exit 0; }
 find ref-decoder ref-encoder conformance fuzz tests bench tools -name '*.[ch]' |

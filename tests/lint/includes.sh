@@ -1,6 +1,7 @@
 #!/bin/sh
 # Who may include whom (a folder may always include itself, and what lies in itself by its bare
 # name). Folders are named from ref-decoder or ref-encoder. System headers are not looked at.
+export LC_ALL=C
 rooms_1="train/math"
 rooms_2="$rooms_1 train/model"
 rooms_3="$rooms_2 train/splat train/raster train/loss train/rate train/pose"

@@ -4,6 +4,7 @@
 # thread, and keeps nothing between calls: no variable of a file or function that can change
 # (state.py). Its folders are those of DEC_SRC in the Makefile; render/ draws for programs and is a
 # library of its own.
+export LC_ALL=C
 bad=0
 folders=$(sed -n '/^DEC_SRC/,/)))/s/.*addprefix ref-decoder\/,\([^)]*\)).*/\1/p' Makefile |
     tr ' ,' '\n\n' | sed 's/\/\*\.c$//')

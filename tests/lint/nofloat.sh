@@ -1,6 +1,7 @@
 #!/bin/sh
 # Tier E decides with integers only (spec 12.1): no floating-point literals, double or libm in norm/
 # and read/. The type float itself may be named where values are only carried (blobs, header steps).
+export LC_ALL=C
 bad=0
 for f in ref-decoder/norm/*.[ch] ref-decoder/read/*.[ch]; do
     [ -f "$f" ] || continue

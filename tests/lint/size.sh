@@ -1,6 +1,7 @@
 #!/bin/sh
 # C: files of at most 600 lines, and unique file names. Shell, awk and Python, which say more in a
 # line: at most 400. Functions of at most 60 lines everywhere.
+export LC_ALL=C
 bad=0
 folders='ref-decoder ref-encoder conformance tests fuzz bench tools'
 for f in $(find $folders .ci -type f \( -name '*.[ch]' -o -name '*.sh' -o -name '*.awk' \

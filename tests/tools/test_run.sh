@@ -1,7 +1,8 @@
 #!/bin/sh
 # test_run.sh - tests/run.sh reports for each program how many tests passed, and how many were
-# skipped if any were; a program that fails, crashes or runs no test is a failure. Prints lines as a
-# cmocka program does; run by `make test` from the project's root.
+# skipped if any were; a program that fails, crashes or runs no test is a failure. Programs have the
+# locale C, and temporary files where they can run what they make. Prints lines as a cmocka program
+# does; run by `make test` from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 . tests/support/speak.sh
@@ -25,4 +26,33 @@ runs fails 1 '3 passed, 1 failed, 0 skipped' "$out/good" "$out/wrong"
 runs shows_failures 1 '[  FAILED  ] b: why' "$out/wrong"
 runs breaks_off 1 'broken ... FAILED (1)' "$out/broken"
 runs nothing 1 'empty ... FAILED: ran nothing' "$out/empty"
+
+# What programs find around them.
+cat >"$out/finds" <<END
+#!/bin/sh
+printf '%s\n' "\$LC_ALL" "\${POSIXLY_CORRECT-unset}" "\$TMPDIR" >"$out/found"
+echo '[       OK ] finds'
+END
+chmod +x "$out/finds"
+mkdir "$out/a b" "$out/build"
+runs finds 0 '1 passed, 0 failed' "$out/finds"
+same() { if [ "$2" = "$3" ]; then ok "$1"; else fail "$1" "$2, not $3"; fi; }
+# place NAME TMPDIR: programs get another folder, below the build, which is gone afterwards.
+place() {
+    expect "$1" 0 'temporary files are made in ' env LC_ALL=C.UTF-8 POSIXLY_CORRECT=1 TMPDIR="$2" \
+        TED4_BUILD="$out/build" sh tests/run.sh "$out/finds"
+    same "$1_found" "$(sed 's/-.*//' "$out/found" | tr '\n' ' ')" "C unset $out/build/tmp "
+    same "$1_removed" "$(ls "$out/build")" ''
+}
+place space "$out/a b"
+place absent "$out/none"
+# A folder that runs nothing: a file system of its own, where this user can have one.
+mkdir "$out/still"
+if unshare -rm mount -t tmpfs -o noexec none "$out/still" 2>/dev/null; then
+    expect noexec 0 'temporary files are made in ' env TMPDIR="$out/still" TED4_BUILD="$out/build" \
+        unshare -rm sh -c 'mount -t tmpfs -o noexec none "$TMPDIR" && sh tests/run.sh "$1"' sh \
+        "$out/finds"
+else
+    skip noexec "there can be no file system of its own here"
+fi
 exit $bad
