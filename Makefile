@@ -2,6 +2,9 @@
 # rest.
 all:
 
+# The command line sets these. What the environment calls so is somebody else's: build systems set
+# ARCH=x86_64.
+$(foreach v,OPT B ARCH,$(if $(filter environment,$(origin $v)),$(eval undefine $v)))
 OPT   ?= -O3
 B     ?= build
 TED4_DATA ?= ../shared/data
@@ -138,7 +141,9 @@ $(addprefix $B/tests/encoder/test_starved_,trainer writer): override LDFLAGS += 
 test-programs: all $(TESTS)
 
 # What a user builds in order to see something is built on all cores, unless -j says on how many.
-JOBS = $(if $(findstring -j,$(MAKEFLAGS)),,-j$(shell nproc))
+# nproc would take a number of threads for OpenMP as that of cores.
+NPROC = env -u OMP_NUM_THREADS -u OMP_THREAD_LIMIT nproc
+JOBS = $(if $(findstring -j,$(MAKEFLAGS)),,-j$(shell $(NPROC)))
 
 # Lints take seconds. Prints each test program it runs and a closing line of totals.
 test: lint

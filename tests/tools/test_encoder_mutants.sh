@@ -111,7 +111,7 @@ holds some_hold 1
 
 # Mutants that do not end or do not compile.
 fresh; sed -i 's/y = 3/y = 4/' "$out/tree/tests/mutants/mutants.list"
-mutants --only a-crash -t 1 >/dev/null 2>&1
+mutants --only a-crash -t 5 >/dev/null 2>&1
 check hang "$csv" ',killed,x/test_one,hang'
 fresh; sed -i 's/z = 2/z = ;/' "$out/tree/tests/mutants/mutants.list"
 mutants --only b >/dev/null 2>&1

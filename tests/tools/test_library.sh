@@ -126,8 +126,8 @@ if ${CC:-cc} -fno-pie -no-pie -I"$usr/include" "$out/address.c" -L"$usr/lib" -lt
 else fail address "$(cat "$out/err")"; fi
 
 # Libraries elsewhere than below PREFIX, by somebody whose files others may not read.
-(umask 077; make install-library B="$TED4_BUILD" PREFIX="$out/far/opt" LIBDIR="$out/far/lib") \
-    >"$out/said" 2>&1
+(umask 077; make install-library B="$TED4_BUILD" DESTDIR='' PREFIX="$out/far/opt" \
+    LIBDIR="$out/far/lib") >"$out/said" 2>&1
 check far "$out/far/lib/pkgconfig/ted4.pc" "libdir=$out/far/lib" "prefix=$out/far/opt"
 if find "$out/far" -type f ! -perm -444 | grep -q .; then fail readable "$(ls -lR "$out/far")"
 else ok readable; fi

@@ -14,6 +14,15 @@
 
 static char said[65536];
 
+static int count(const char *what)
+{
+    int n = 0;
+
+    for (const char *at = said; (at = strstr(at, what)) != NULL; at++)
+        n++;
+    return n;
+}
+
 typedef struct {
     char name[TEMPORARY_SIZE];
     int usual;
@@ -31,16 +40,23 @@ static capture begin_capture(void)
     return c;
 }
 
+/* Sets said to the text captured so far. */
+static void look(const capture *c)
+{
+    FILE *f = fopen(c->name, "rb");
+
+    if (f == NULL)
+        abort();
+    said[fread(said, 1, sizeof said - 1, f)] = 0;
+    fclose(f);
+}
+
 /* Ends the redirection; the captured text is in said. */
 static void end_capture(capture c)
 {
-    FILE *f = fopen(c.name, "rb");
-
     assert_true(dup2(c.usual, STDERR_FILENO) >= 0);
     close(c.usual);
-    assert_non_null(f);
-    said[fread(said, 1, sizeof said - 1, f)] = 0;
-    fclose(f);
+    look(&c);
     remove(c.name);
 }
 
@@ -50,6 +66,24 @@ static void pause_s(double seconds)
                                 (long)(1e9 * (seconds - (double)(time_t)seconds)) };
 
     nanosleep(&t, NULL);
+}
+
+static double clock_s(void)
+{
+    struct timespec t;
+
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* Waits until what was captured n times, a minute at most: a busy machine lets a thread wait. */
+static void wait_for(const capture *c, const char *what, int n)
+{
+    look(c);
+    for (int i = 0; i < 1200 && count(what) < n; i++) {
+        pause_s(0.05);
+        look(c);
+    }
 }
 
 static void expect_time(double seconds, const char *want)
@@ -118,20 +152,13 @@ static void test_lines(void **state)
     expect_line(&(ted4_facts) { 0 }, 0, 7, "");
 }
 
-static int count(const char *what)
-{
-    int n = 0;
-
-    for (const char *at = said; (at = strstr(at, what)) != NULL; at++)
-        n++;
-    return n;
-}
-
 /* A separate thread reports progress while the caller does nothing; the interval grows when
  * training begins. */
 static void test_thread(void **state)
 {
     const capture c = begin_capture();
+    const double began = clock_s();
+    double unpacking;
     ted4_teller t;
 
     (void)state;
@@ -142,14 +169,15 @@ static void test_thread(void **state)
     t.pause[1] = 60;
     ted4_teller_say(&t, "first %d", 1);
     ted4_teller_now(&t, &(ted4_facts) { .kind = TED4_TELL_UNPACKING, .name = "x.mp4", .step = 3 });
-    pause_s(2.5);
+    wait_for(&c, "tool: unpacking x.mp4: 3 frames\n", 3);
     ted4_teller_now(&t, &(ted4_facts) { .kind = TED4_TELL_TRAINING, .stage = "1", .share = -1 });
+    unpacking = clock_s() - began;
     pause_s(1.2);
     ted4_teller_end(&t);
     end_capture(c);
     assert_memory_equal(said, "tool: first 1\n", 14);
-    assert_true(count("tool: unpacking x.mp4: 3 frames\n") >= 2);
-    assert_true(count("unpacking") <= 4);
+    assert_true(count("tool: unpacking x.mp4: 3 frames\n") >= 3);
+    assert_true(count("unpacking") <= unpacking / 0.6);
     assert_int_equal(count("stage"), 0);
     assert_int_equal(count("\r"), 0);
 }
@@ -167,7 +195,10 @@ static void test_show_and_quiet(void **state)
         ted4_teller_say(&t, "words");
         ted4_teller_now(&t, &(ted4_facts) { .kind = TED4_TELL_CODING });
         ted4_teller_show(&t);
-        pause_s(0.7);
+        if (quiet)
+            pause_s(0.7);
+        else
+            wait_for(&c, "tool: coding", 2);
         ted4_teller_error(&t, "trouble");
         ted4_teller_end(&t);
         end_capture(c);
