@@ -18,14 +18,20 @@ suits() {
     rm -f "$trial"
     return $can
 }
-if ! suits "${TMPDIR:-/tmp}" 2>/dev/null; then
-    own=$(mktemp -d "${TED4_BUILD:-$(pwd)}/tmp-XXXXXX") || exit 1
-    trap 'rm -rf "$own"' EXIT
-    trap 'exit 130' INT
-    trap 'exit 143' TERM
-    echo "temporary files are made in $own: ${TMPDIR:-/tmp} runs no programs, or has a space"
+asked=${TMPDIR:-/tmp}
+for base in "$asked" "${TED4_BUILD:-$(pwd)}" /tmp; do suits "$base" 2>/dev/null && break; done
+own=$(mktemp -d "$base/ted4-run-XXXXXX") || exit 1
+trap 'rm -rf "$own"' EXIT
+trap 'exit 130' INT
+trap 'exit 143' TERM
+if [ "$base" != "$asked" ]; then
+    echo "temporary files are made in $own: $asked runs no programs, or has a space"
     export TMPDIR="$own"
 fi
+# Commands that programs are given are split at spaces, and make knows no others.
+case ${TED4_BUILD:-} in
+*[[:space:]]*) ln -s "$TED4_BUILD" "$own/build" && export TED4_BUILD="$own/build" ;;
+esac
 
 passed=0 failed=0 skipped=0
 for t in "$@"; do

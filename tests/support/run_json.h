@@ -24,7 +24,8 @@ static inline int run_json(const char *program, const uint8_t *data, size_t size
 
     assert_int_equal(write(fd, data, size), (ssize_t)size);
     close(fd);
-    snprintf(command, sizeof command, "%s/%s %s 2>/dev/null", getenv("TED4_BUILD"), program, path);
+    snprintf(command, sizeof command, "'%s'/%s '%s' 2>/dev/null", getenv("TED4_BUILD"), program,
+             path);
     pipe = popen(command, "r");
     assert_non_null(pipe);
     *printed = json_loadf(pipe, 0, NULL);

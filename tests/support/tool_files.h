@@ -32,8 +32,8 @@ static inline int run(const char *format, ...)
 {
     char command[8192];
     va_list ap;
-    int n = snprintf(command, sizeof command, "cd %s && PATH=%s:$PATH && exec 2>err && ", folder,
-                     build);
+    int n = snprintf(command, sizeof command, "cd '%s' && PATH='%s':\"$PATH\" && exec 2>err && ",
+                     folder, build);
 
     va_start(ap, format);
     n += vsnprintf(command + n, sizeof command - (size_t)n, format, ap);
@@ -142,7 +142,7 @@ static inline int teardown(void **state)
         return 0;
     for (int view = 0; view < 3; view++)
         ted4_recon_free(file[view].recon);
-    return run("rm -rf %s", folder);
+    return run("rm -rf '%s'", folder);
 }
 
 static inline void need_programs(void)

@@ -28,8 +28,8 @@ static int run(const char *arguments)
     FILE *f;
     int status;
 
-    snprintf(command, sizeof command, "cd %s && %s/ted4enc -q %s >out.txt 2>err.txt", folder.path,
-             build, arguments);
+    snprintf(command, sizeof command, "cd '%s' && '%s'/ted4enc -q %s >out.txt 2>err.txt",
+             folder.path, build, arguments);
     status = system(command);
     f = fopen(tiny_path(&folder, "err.txt"), "rb");
     assert_non_null(f);
@@ -186,18 +186,19 @@ static void test_hold_out(void **state)
     need_program();
     assert_int_equal(run("good --check --hold-out 2.png --alpha premultiplied"), 0);
     must(system(NULL) != 0, "a shell");
-    snprintf(command, sizeof command, "grep -q '^pictures    2 train, 1 test$' %s",
+    snprintf(command, sizeof command, "grep -q '^pictures    2 train, 1 test$' '%s'",
              tiny_path(&folder, "out.txt"));
     assert_int_equal(system(command), 0);
     refuse("good --check --hold-out 9", "--hold-out 9: no camera or picture of this name, expected "
                                         "one of: 0.png, 1.png, 2.png");
     refuse("good --alpha wet" OUT, "--alpha: bad value wet");
     assert_int_equal(run("good --hold-out 2.png" OUT QUICK), 0);
-    snprintf(command, sizeof command,
-             "cd %s && %s/ted4eval out/x.ted4 good --hold-out 0 --hold-out 1.png --alpha straight "
-             "--anyway --json -j 1 >out.txt 2>err.txt"
-             " && grep -q '\"views\":2' out.txt",
-             folder.path, build);
+    snprintf(
+        command, sizeof command,
+        "cd '%s' && '%s'/ted4eval out/x.ted4 good --hold-out 0 --hold-out 1.png --alpha straight "
+        "--anyway --json -j 1 >out.txt 2>err.txt"
+        " && grep -q '\"views\":2' out.txt",
+        folder.path, build);
     assert_int_equal(system(command), 0);
     must(remove(tiny_path(&folder, "out/x.ted4")) == 0, "x.ted4");
 }
@@ -217,8 +218,9 @@ static void test_rate(void **state)
         snprintf(text, sizeof text, "\"fps\": %s, ", rates[i][0]);
         scene("rate", text, NULL);
         assert_int_equal(run("rate -f" OUT QUICK), 0);
-        snprintf(text, sizeof text, "cd %s && %s/ted4info out/x.ted4 | grep -qx 'frames      %s'",
-                 folder.path, build, rates[i][1]);
+        snprintf(text, sizeof text,
+                 "cd '%s' && '%s'/ted4info out/x.ted4 | grep -qx 'frames      %s'", folder.path,
+                 build, rates[i][1]);
         if (system(text) != 0)
             fail_msg("%s", rates[i][0]);
     }

@@ -394,10 +394,11 @@ static void check_case(int number, const hostile *h)
     char command[1024];
 
     write_case(h);
-    snprintf(command, sizeof command,
-             "cd %s && XDG_CACHE_HOME=%s/cache %s/ted4enc s --check -q -j 1 >out.txt 2>err.txt "
-             "</dev/null",
-             folder.path, folder.path, build);
+    snprintf(
+        command, sizeof command,
+        "cd '%s' && XDG_CACHE_HOME='%s'/cache '%s'/ted4enc s --check -q -j 1 >out.txt 2>err.txt "
+        "</dev/null",
+        folder.path, folder.path, build);
     const int status = system(command);
     slurp("out.txt", out, sizeof out);
     slurp("err.txt", err, sizeof err);

@@ -12,7 +12,7 @@ for name in unit vectors agreement; do
     case $name in
     unit) python3 -m unittest discover -q -s $here 2>&1 ;;
     vectors) "$build/ted4conf" run --once -q --timeout 120 --list conformance/lists/few.txt \
-        --decoder "python3 $PWD/$here/reader.py" ;;
+        --decoder "python3 $here/reader.py" ;;
     agreement) python3 $here/compare.py --keep "$build/tests" --decoder "$build/ted4dec" \
         --seeds 2000:2006 --broken 8 ;;
     esac

@@ -31,6 +31,8 @@ runs nothing 1 'empty ... FAILED: ran nothing' "$out/empty"
 cat >"$out/finds" <<END
 #!/bin/sh
 printf '%s\n' "\$LC_ALL" "\${POSIXLY_CORRECT-unset}" "\$TMPDIR" >"$out/found"
+ls "\${TED4_BUILD:-/}" >"$out/listed"
+echo "\${TED4_BUILD:-}" >"$out/built"
 echo '[       OK ] finds'
 END
 chmod +x "$out/finds"
@@ -41,11 +43,16 @@ same() { if [ "$2" = "$3" ]; then ok "$1"; else fail "$1" "$2, not $3"; fi; }
 place() {
     expect "$1" 0 'temporary files are made in ' env LC_ALL=C.UTF-8 POSIXLY_CORRECT=1 TMPDIR="$2" \
         TED4_BUILD="$out/build" sh tests/run.sh "$out/finds"
-    same "$1_found" "$(sed 's/-.*//' "$out/found" | tr '\n' ' ')" "C unset $out/build/tmp "
+    same "$1_found" "$(sed 's/-.*//' "$out/found" | tr '\n' ' ')" "C unset $out/build/ted4 "
     same "$1_removed" "$(ls "$out/build")" ''
 }
 place space "$out/a b"
 place absent "$out/none"
+# A build whose path has a space gets one without, too.
+mkdir "$out/a build"
+: >"$out/a build/program"
+expect build_space 0 '1 passed' env TED4_BUILD="$out/a build" sh tests/run.sh "$out/finds"
+same build_listed "$(cat "$out/listed") $(wc -w <"$out/built")" 'program 1'
 # A folder that runs nothing: a file system of its own, where this user can have one.
 mkdir "$out/still"
 if unshare -rm mount -t tmpfs -o noexec none "$out/still" 2>/dev/null; then

@@ -22,13 +22,14 @@ static int encode(const char *arguments)
         skip();
     }
 
-    snprintf(command, sizeof command,
-             "cd %s && %s/ted4enc . -f -j1 --preset draft --capacity fixed --iterations 150,250 "
-             "--set offsets=4 --set feature=8 --set phi=4"
-             " --set bank_dim=8 --set deform_width=8 --set head_width=12 --set hyper_width=8 --set "
-             "ar_width=8 --set slices=2"
-             " --set octaves=4 --set init_anchors=150 --set max_anchors=260 %s 2>err",
-             folder.path, build, arguments);
+    snprintf(
+        command, sizeof command,
+        "cd '%s' && '%s'/ted4enc . -f -j1 --preset draft --capacity fixed --iterations 150,250 "
+        "--set offsets=4 --set feature=8 --set phi=4"
+        " --set bank_dim=8 --set deform_width=8 --set head_width=12 --set hyper_width=8 --set "
+        "ar_width=8 --set slices=2"
+        " --set octaves=4 --set init_anchors=150 --set max_anchors=260 %s 2>err",
+        folder.path, build, arguments);
 
     const int status = system(command);
 
@@ -64,7 +65,7 @@ static int same(const char *a, const char *b)
 {
     char command[1024];
 
-    snprintf(command, sizeof command, "cd %s && cmp -s %s %s", folder.path, a, b);
+    snprintf(command, sizeof command, "cd '%s' && cmp -s %s %s", folder.path, a, b);
     return system(command) == 0;
 }
 
