@@ -179,7 +179,7 @@ static void hash_files(conf_mutant_list *l)
             l->m[i].code = conf_mutant_code_of(l->m[i].file);
         if (l->beyond == 0 && l->m[i].place->name[0] != '\0')
             l->beyond = conf_mutant_code_of("ref-decoder/kernel/*.[ch] "
-                                            "ref-decoder/tool/threads.[ch] " CONF_PRINTED_INFLATE
+                                            "ref-decoder/tool/thread*.[ch] " CONF_PRINTED_INFLATE
                                             " " CONF_ANNEX_L);
     }
 }

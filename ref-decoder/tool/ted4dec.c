@@ -109,7 +109,7 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
     [OPT_WORK] = { 0, "max-work", "STEPS",
                    "refuse a file that asks for more steps, also for one query (specification "
                    "13.4). Default: any number" },
-    [OPT_THREADS] = { 'j', "threads", "N", "threads; 0: all cores. Default 0" },
+    [OPT_THREADS] = { 'j', "threads", "N", "threads; 0: all cores that it may use. Default 0" },
     [OPT_FORCE] = { 'f', "force", NULL, "overwrite files" },
     [OPT_JSON] = { 0, "json", NULL, "results as one JSON object" },
     [OPT_QUIET] = { 'q', "quiet", NULL, "errors and warnings only" },

@@ -8,13 +8,18 @@
  * a thread that sleeps or has no processor at the moment. No thread has to wake many others: each
  * one that enters a job wakes two sleepers, which wake two more each.
  * SPDX-License-Identifier: BSD-2-Clause */
+#ifdef __linux__
+#define _GNU_SOURCE /* sched_getaffinity and CPU_COUNT */
+#endif
 #include "tool/threads.h"
 
 #include <pthread.h>
+#include <sched.h>
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+#include "tool/thread_start.h"
 
 /* Polls before sleeping, about 20 microseconds; and number of sleepers that each thread wakes. */
 enum { SPINS = 1000, WAKES = 2 };
@@ -223,10 +228,24 @@ static int start(team *t, member *m)
     m->team = t;
     pthread_mutex_init(&m->mutex, NULL);
     pthread_cond_init(&m->woken, NULL);
-    if (pthread_create(&m->thread, NULL, work, m) == 0)
+    if (ted4_thread_start(&m->thread, work, m) == 0)
         return 0;
     forget(m);
     return -1;
+}
+
+int ted4_threads_allowed(void)
+{
+    long n;
+#ifdef __linux__
+    cpu_set_t allowed;
+
+    /* Fails where there are more processors than a set has room for. */
+    if (sched_getaffinity(0, sizeof allowed, &allowed) == 0)
+        return CPU_COUNT(&allowed);
+#endif
+    n = sysconf(_SC_NPROCESSORS_ONLN);
+    return n > 0 ? (int)n : 1;
 }
 
 void ted4_threads_init(ted4_parallel *p, int n_threads)
@@ -236,7 +255,7 @@ void ted4_threads_init(ted4_parallel *p, int n_threads)
     p->run = run_alone;
     p->user = NULL;
     if (n_threads <= 0)
-        n_threads = (int)sysconf(_SC_NPROCESSORS_ONLN);
+        n_threads = ted4_threads_allowed();
     if (n_threads > TED4_MAX_THREADS)
         n_threads = TED4_MAX_THREADS;
     if (n_threads <= 1 || (t = aligned_alloc(64, sizeof *t)) == NULL)

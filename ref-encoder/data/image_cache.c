@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "data/data_util.h"
+#include "tool/thread_start.h"
 
 typedef struct {
     uint8_t *bytes; /* owned; NULL unless full */
@@ -239,7 +240,7 @@ void ted4_image_cache_ahead(ted4_image_cache *c, size_t i, int n_threads)
         !is_queued(a, i) && waiting < prefetch_limit(c)) {
         a->queue[a->n_queued++] = i;
         if (a->n_queued > a->n_waiting && a->n_threads < most &&
-            pthread_create(&a->threads[a->n_threads], NULL, decode_ahead, c) == 0)
+            ted4_thread_start(&a->threads[a->n_threads], decode_ahead, c) == 0)
             a->n_threads++;
         pthread_cond_signal(&c->wanted);
     }

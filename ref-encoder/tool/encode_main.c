@@ -373,14 +373,18 @@ static int transcode(const encoder *e)
     return status;
 }
 
-/* Returns how many threads this process takes; 0: as many as there are cores. */
+/* Returns how many threads this process takes; 0: as many as it may use cores. The processes of a
+ * machine share its cores. A process that is bound to some of them takes no more than these. */
 static int threads_of(const ted4_request *r, const ted4_exchange *x)
 {
-    const int cores = (int)sysconf(_SC_NPROCESSORS_ONLN);
+    const int allowed = ted4_threads_allowed(), cores = (int)sysconf(_SC_NPROCESSORS_ONLN);
 
     if (r->threads > 0 || x == NULL)
         return r->threads;
-    return cores > (int)x->neighbours ? cores / (int)x->neighbours : 1;
+
+    const int share = cores > (int)x->neighbours ? cores / (int)x->neighbours : 1;
+
+    return share < allowed ? share : allowed;
 }
 
 /* Parses the command line: rank 0 first, so that what is wrong with it is said once. Returns a

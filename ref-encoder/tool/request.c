@@ -91,7 +91,7 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
     [OPT_HOLD_OUT] = { 0, "hold-out", "NAME",
                        "train without this camera, in place of the layout's split; repeatable" },
     [OPT_SEED] = { 0, "seed", "S", "same scene, options and seed: same bytes" },
-    [OPT_THREADS] = { 'j', "threads", "N", "threads; 0: all cores. Default 0" },
+    [OPT_THREADS] = { 'j', "threads", "N", "threads; 0: all cores that it may use. Default 0" },
     [OPT_CACHE] = { 0, "cache", "MIB",
                     "memory for decoded pictures; more of them are read again. Default 2048" },
     [OPT_CHECKPOINT] = { 0, "checkpoint", "FILE",

@@ -68,7 +68,7 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
                      "write DIR/truth, DIR/ours, DIR/error (5 times the difference) as NNNNN.png" },
     [OPT_SHEET] = { 0, "sheet", "FILE.png",
                     "one picture: truth, ours, error of up to four cameras, at other times" },
-    [OPT_THREADS] = { 'j', "threads", "N", "threads; 0: all cores. Default 0" },
+    [OPT_THREADS] = { 'j', "threads", "N", "threads; 0: all cores that it may use. Default 0" },
     [OPT_ALIGN] = { 0, "align", NULL,
                     "also fit each picture's pose on half of it, judge the other" },
     [OPT_COLOURS] = { 0, "colours", NULL,

@@ -9,6 +9,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "tool/thread_start.h"
+
 /* All in seconds: how often the thread wakes up, and the time between status lines, elsewhere
  * before training, elsewhere from then on, and on a terminal. */
 #define LOOK_EVERY   0.5
@@ -139,7 +141,7 @@ void ted4_teller_begin(ted4_teller *t, const char *program, int quiet)
     pthread_mutex_init(&t->lock, NULL);
     pthread_cond_init(&t->wake, NULL);
     /* If there is no thread, only the messages are printed. */
-    t->running = !quiet && pthread_create(&t->thread, NULL, tell, t) == 0;
+    t->running = !quiet && ted4_thread_start(&t->thread, tell, t) == 0;
 }
 
 /* Clears an open status line; the caller holds the lock. */

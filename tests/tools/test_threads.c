@@ -1,6 +1,9 @@
 /* test_threads.c - tool/threads.c: every index runs exactly once, for any numbers of threads and
  * indices and however uneven the work; sleeping threads wake up, and all end with their pool.
  * SPDX-License-Identifier: BSD-2-Clause */
+#ifdef __linux__
+#define _GNU_SOURCE /* sched_setaffinity */
+#endif
 #include <sched.h>
 #include <stdatomic.h>
 #include <stdlib.h>
@@ -9,6 +12,7 @@
 #include <unistd.h>
 
 #include "test.h"
+#include "tool/thread_start.h"
 #include "tool/threads.h"
 
 enum { MOST = 3000, THREADS = 9 };
@@ -156,13 +160,60 @@ static void test_finished(void **state)
     free(c);
 }
 
+/* Without a number, a process that is kept to one processor gets no second thread. */
+static void test_allowed(void **state)
+{
+    (void)state;
+    assert_true(ted4_threads_allowed() >= 1);
+#ifdef __linux__
+    cpu_set_t before, one;
+    ted4_parallel p;
+    int first = 0;
+
+    if (sched_getaffinity(0, sizeof before, &before) != 0)
+        skip();
+    while (!CPU_ISSET(first, &before))
+        first++;
+    CPU_ZERO(&one);
+    CPU_SET(first, &one);
+    assert_int_equal(sched_setaffinity(0, sizeof one, &one), 0);
+    assert_int_equal(ted4_threads_allowed(), 1);
+    ted4_threads_init(&p, 0);
+    assert_int_equal(ted4_threads_count(&p), 1);
+    ted4_threads_finish(&p);
+    assert_int_equal(sched_setaffinity(0, sizeof before, &before), 0);
+#endif
+}
+
+/* Where a thread of the system's has less, ours has at least what it is promised; the system may
+ * take some of it. */
+static void *fill_stack(void *arg)
+{
+    volatile unsigned char bytes[TED4_THREAD_STACK / 8 * 7];
+
+    for (size_t i = 0; i < sizeof bytes; i += 1024)
+        bytes[i] = 1;
+    return (void)bytes[0], arg;
+}
+
+static void test_stack(void **state)
+{
+    int x;
+    pthread_t thread;
+    void *got;
+
+    (void)state;
+    assert_int_equal(ted4_thread_start(&thread, fill_stack, &x), 0);
+    assert_int_equal(pthread_join(thread, &got), 0);
+    assert_ptr_equal(got, &x);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_once),
-        cmocka_unit_test(test_helped),
-        cmocka_unit_test(test_woken),
-        cmocka_unit_test(test_finished),
+        cmocka_unit_test(test_once),    cmocka_unit_test(test_helped),
+        cmocka_unit_test(test_woken),   cmocka_unit_test(test_finished),
+        cmocka_unit_test(test_allowed), cmocka_unit_test(test_stack),
     };
 
     return cmocka_run_group_tests_name("threads", tests, NULL, NULL);
