@@ -47,7 +47,10 @@ static int probe_png(FILE *f, const char *path, ted4_image_header *h, ted4_messa
     h->has_alpha = (c[17] & 4) != 0;
     while (!h->has_alpha && fread(c, 1, 8, f) == 8 && memcmp(c + 4, "IDAT", 4) != 0) {
         h->has_alpha = memcmp(c + 4, "tRNS", 4) == 0;
-        if (fseek(f, (long)be32(c) + 4, SEEK_CUR) != 0)
+        /* PNG's own bound, which holds in a long of 32 bits too. */
+        if (be32(c) > INT32_MAX)
+            return ted4_say(m, "%s: PNG with a chunk of more than 2^31 - 1 bytes", path);
+        if (fseek(f, (long)be32(c), SEEK_CUR) != 0 || fseek(f, 4, SEEK_CUR) != 0)
             break;
     }
     return 0;

@@ -114,6 +114,32 @@ static void test_png_write(void **state)
     assert_int_equal(rmdir(f.path), 0);
 }
 
+/* A chunk before the data that is longer than PNG permits. */
+static void test_png_chunk_length(void **state)
+{
+    static const uint8_t px[3];
+    static const uint8_t long_chunk[8] = { 0xff, 0xff, 0xff, 0xf4, 't', 'E', 'X', 't' };
+    enum { AFTER_IHDR = 8 + 8 + 13 + 4 };
+    tiny_folder f = tiny_new();
+    const char *path = tiny_path(&f, "a.png");
+    uint8_t bytes[AFTER_IHDR + sizeof long_chunk];
+    ted4_image_header header;
+    ted4_message m;
+
+    (void)state;
+    write_png(path, 1, 1, 8, PNG_COLOR_TYPE_RGB, px, sizeof px);
+    FILE *in = fopen(path, "rb");
+    assert_non_null(in);
+    assert_int_equal(fread(bytes, 1, AFTER_IHDR, in), AFTER_IHDR);
+    fclose(in);
+    memcpy(bytes + AFTER_IHDR, long_chunk, sizeof long_chunk);
+    tiny_bytes(&f, "a.png", bytes, sizeof bytes);
+    assert_int_equal(ted4_image_probe(path, &header, &m), -1);
+    assert_non_null(strstr(m.text, "2^31 - 1"));
+    remove(path);
+    assert_int_equal(rmdir(f.path), 0);
+}
+
 static void write_jpeg(const char *path, int w, int h, int components)
 {
     const jpeg_slopes s = { .w = w,
@@ -514,6 +540,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_png),
         cmocka_unit_test(test_png_write),
+        cmocka_unit_test(test_png_chunk_length),
         cmocka_unit_test(test_jpeg),
         cmocka_unit_test(test_undistort),
         cmocka_unit_test(test_undistort_border),
