@@ -49,6 +49,26 @@ typedef int32_t ted4_vi __attribute__((
     vector_size(TED4_VEC_BYTES))); /* masks are -1 or 0 in each lane, as comparisons give them */
 typedef uint32_t ted4_vu __attribute__((vector_size(TED4_VEC_BYTES)));
 
+/* A vector of the lanes of two vectors of floats, a and b, with these numbers, as
+ * __builtin_shufflevector gives it. gcc has that one from version 12 on; its older function gives
+ * no vector that is shorter than a, but lanes that have no number are the first of a, and not
+ * taken. */
+#if defined(__clang__) || __GNUC__ >= 12
+#define TED4_SHUFFLE(a, b, ...) __builtin_shufflevector(a, b, __VA_ARGS__)
+#else
+#define TED4_SHUFFLE(a, b, ...)                                                         \
+    __extension__({                                                                     \
+        typedef int32_t numbers_ __attribute__((vector_size(sizeof(a))));               \
+        typedef float shorter_                                                          \
+            __attribute__((vector_size(sizeof((const int32_t[]) { __VA_ARGS__ }))));    \
+        const __typeof__(a) all_ = __builtin_shuffle(a, b, (numbers_) { __VA_ARGS__ }); \
+        shorter_ some_;                                                                 \
+                                                                                        \
+        memcpy(&some_, &all_, sizeof some_);                                            \
+        some_;                                                                          \
+    })
+#endif
+
 /* Returns x in every lane. */
 TED4_INLINE ted4_vf ted4_vf_all(float x)
 {

@@ -20,14 +20,13 @@ typedef float four __attribute__((vector_size(16)));
 TED4_INLINE ted4_vf pairs(ted4_vf a, ted4_vf b)
 {
 #if TED4_VEC_BYTES == 64
-    return __builtin_shufflevector(a, b, 0, 2, 16, 18, 4, 6, 20, 22, 8, 10, 24, 26, 12, 14, 28,
-                                   30) +
-           __builtin_shufflevector(a, b, 1, 3, 17, 19, 5, 7, 21, 23, 9, 11, 25, 27, 13, 15, 29, 31);
+    return TED4_SHUFFLE(a, b, 0, 2, 16, 18, 4, 6, 20, 22, 8, 10, 24, 26, 12, 14, 28, 30) +
+           TED4_SHUFFLE(a, b, 1, 3, 17, 19, 5, 7, 21, 23, 9, 11, 25, 27, 13, 15, 29, 31);
 #elif TED4_VEC_BYTES == 32
-    return __builtin_shufflevector(a, b, 0, 2, 8, 10, 4, 6, 12, 14) +
-           __builtin_shufflevector(a, b, 1, 3, 9, 11, 5, 7, 13, 15);
+    return TED4_SHUFFLE(a, b, 0, 2, 8, 10, 4, 6, 12, 14) +
+           TED4_SHUFFLE(a, b, 1, 3, 9, 11, 5, 7, 13, 15);
 #else
-    return __builtin_shufflevector(a, b, 0, 2, 4, 6) + __builtin_shufflevector(a, b, 1, 3, 5, 7);
+    return TED4_SHUFFLE(a, b, 0, 2, 4, 6) + TED4_SHUFFLE(a, b, 1, 3, 5, 7);
 #endif
 }
 
@@ -38,11 +37,10 @@ TED4_INLINE four fold(const ted4_vf v[4])
     const ted4_vf s = pairs(pairs(v[0], v[1]), pairs(v[2], v[3]));
 
 #if TED4_VEC_BYTES == 64
-    return (__builtin_shufflevector(s, s, 0, 1, 2, 3) + __builtin_shufflevector(s, s, 4, 5, 6, 7)) +
-           (__builtin_shufflevector(s, s, 8, 9, 10, 11) +
-            __builtin_shufflevector(s, s, 12, 13, 14, 15));
+    return (TED4_SHUFFLE(s, s, 0, 1, 2, 3) + TED4_SHUFFLE(s, s, 4, 5, 6, 7)) +
+           (TED4_SHUFFLE(s, s, 8, 9, 10, 11) + TED4_SHUFFLE(s, s, 12, 13, 14, 15));
 #elif TED4_VEC_BYTES == 32
-    return __builtin_shufflevector(s, s, 0, 1, 2, 3) + __builtin_shufflevector(s, s, 4, 5, 6, 7);
+    return TED4_SHUFFLE(s, s, 0, 1, 2, 3) + TED4_SHUFFLE(s, s, 4, 5, 6, 7);
 #else
     return s;
 #endif

@@ -65,10 +65,8 @@ typedef float quarter __attribute__((vector_size(16)));
 /* The first two steps of the sum, which reduce 16 lanes to 4. */
 TED4_INLINE quarter to_quarter(ted4_vf v)
 {
-    return (__builtin_shufflevector(v, v, 0, 1, 2, 3) +
-            __builtin_shufflevector(v, v, 8, 9, 10, 11)) +
-           (__builtin_shufflevector(v, v, 4, 5, 6, 7) +
-            __builtin_shufflevector(v, v, 12, 13, 14, 15));
+    return (TED4_SHUFFLE(v, v, 0, 1, 2, 3) + TED4_SHUFFLE(v, v, 8, 9, 10, 11)) +
+           (TED4_SHUFFLE(v, v, 4, 5, 6, 7) + TED4_SHUFFLE(v, v, 12, 13, 14, 15));
 }
 
 /* Does the same steps for four sums at once; each quarter of the result belongs to one sum. */
@@ -79,15 +77,13 @@ TED4_INLINE ted4_vf to_quarters(const ted4_vf v[4])
     for (int i = 0; i < 2; i++) {
         const ted4_vf a = v[2 * i], b = v[2 * i + 1];
 
-        half[i] =
-            __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7, 16, 17, 18, 19, 20, 21, 22, 23) +
-            __builtin_shufflevector(a, b, 8, 9, 10, 11, 12, 13, 14, 15, 24, 25, 26, 27, 28, 29, 30,
-                                    31);
+        half[i] = TED4_SHUFFLE(a, b, 0, 1, 2, 3, 4, 5, 6, 7, 16, 17, 18, 19, 20, 21, 22, 23) +
+                  TED4_SHUFFLE(a, b, 8, 9, 10, 11, 12, 13, 14, 15, 24, 25, 26, 27, 28, 29, 30, 31);
     }
-    return __builtin_shufflevector(half[0], half[1], 0, 1, 2, 3, 8, 9, 10, 11, 16, 17, 18, 19, 24,
-                                   25, 26, 27) +
-           __builtin_shufflevector(half[0], half[1], 4, 5, 6, 7, 12, 13, 14, 15, 20, 21, 22, 23, 28,
-                                   29, 30, 31);
+    return TED4_SHUFFLE(half[0], half[1], 0, 1, 2, 3, 8, 9, 10, 11, 16, 17, 18, 19, 24, 25, 26,
+                        27) +
+           TED4_SHUFFLE(half[0], half[1], 4, 5, 6, 7, 12, 13, 14, 15, 20, 21, 22, 23, 28, 29, 30,
+                        31);
 }
 
 TED4_INLINE void add_terms(const part_sums *s, float sums[TED4_GRAD_SUMS])
@@ -95,10 +91,10 @@ TED4_INLINE void add_terms(const part_sums *s, float sums[TED4_GRAD_SUMS])
     typedef float eight __attribute__((vector_size(32)));
     const ted4_vf p = to_quarters(s->term), q = to_quarters(s->term + 4);
     const ted4_vf two =
-        __builtin_shufflevector(p, q, 0, 1, 16, 17, 4, 5, 20, 21, 8, 9, 24, 25, 12, 13, 28, 29) +
-        __builtin_shufflevector(p, q, 2, 3, 18, 19, 6, 7, 22, 23, 10, 11, 26, 27, 14, 15, 30, 31);
-    const eight one = __builtin_shufflevector(two, two, 0, 4, 8, 12, 2, 6, 10, 14) +
-                      __builtin_shufflevector(two, two, 1, 5, 9, 13, 3, 7, 11, 15);
+        TED4_SHUFFLE(p, q, 0, 1, 16, 17, 4, 5, 20, 21, 8, 9, 24, 25, 12, 13, 28, 29) +
+        TED4_SHUFFLE(p, q, 2, 3, 18, 19, 6, 7, 22, 23, 10, 11, 26, 27, 14, 15, 30, 31);
+    const eight one = TED4_SHUFFLE(two, two, 0, 4, 8, 12, 2, 6, 10, 14) +
+                      TED4_SHUFFLE(two, two, 1, 5, 9, 13, 3, 7, 11, 15);
 
     memcpy(sums, &one, sizeof one);
 }
@@ -116,7 +112,7 @@ TED4_INLINE quarter to_quarter(const part_sums *s, size_t at)
     const ted4_vf v = ted4_vf_load((const float *)&s[0] + at) +
                       ted4_vf_load((const float *)&s[1] + at);
 
-    return __builtin_shufflevector(v, v, 0, 1, 2, 3) + __builtin_shufflevector(v, v, 4, 5, 6, 7);
+    return TED4_SHUFFLE(v, v, 0, 1, 2, 3) + TED4_SHUFFLE(v, v, 4, 5, 6, 7);
 #else
     return (ted4_vf_load((const float *)&s[0] + at) + ted4_vf_load((const float *)&s[2] + at)) +
            (ted4_vf_load((const float *)&s[1] + at) + ted4_vf_load((const float *)&s[3] + at));
@@ -126,12 +122,9 @@ TED4_INLINE quarter to_quarter(const part_sums *s, size_t at)
 /* The last two steps, for four sums at once. */
 TED4_INLINE void finish_sums(const quarter q[4], float out[4])
 {
-    const quarter a = __builtin_shufflevector(q[0], q[1], 0, 1, 4, 5) +
-                      __builtin_shufflevector(q[0], q[1], 2, 3, 6, 7);
-    const quarter b = __builtin_shufflevector(q[2], q[3], 0, 1, 4, 5) +
-                      __builtin_shufflevector(q[2], q[3], 2, 3, 6, 7);
-    const quarter e = __builtin_shufflevector(a, b, 0, 2, 4, 6) +
-                      __builtin_shufflevector(a, b, 1, 3, 5, 7);
+    const quarter a = TED4_SHUFFLE(q[0], q[1], 0, 1, 4, 5) + TED4_SHUFFLE(q[0], q[1], 2, 3, 6, 7);
+    const quarter b = TED4_SHUFFLE(q[2], q[3], 0, 1, 4, 5) + TED4_SHUFFLE(q[2], q[3], 2, 3, 6, 7);
+    const quarter e = TED4_SHUFFLE(a, b, 0, 2, 4, 6) + TED4_SHUFFLE(a, b, 1, 3, 5, 7);
 
     memcpy(out, &e, sizeof e);
 }
