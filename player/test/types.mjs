@@ -6,14 +6,15 @@ import { execFileSync, spawnSync } from "node:child_process";
 import { copyFileSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, symlinkSync,
   writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
-import { join, resolve } from "node:path";
+import { dirname, join } from "node:path";
 import { after, before, test } from "node:test";
+import { fileURLToPath } from "node:url";
 
 // node_modules with TypeScript, PlayCanvas and Spark
 const MODULES = process.env.TED4_MODULES, TARBALL = process.env.TED4_PACKAGE;
 if (MODULES === undefined || TARBALL === undefined)
   throw new Error("TED4_MODULES or TED4_PACKAGE is not set: run make test-player");
-const PACKAGE = resolve(import.meta.dirname, "..");
+const HERE = dirname(fileURLToPath(import.meta.url)), PACKAGE = dirname(HERE);
 const OPTIONS = {
   module: "nodenext", target: "es2022", lib: ["es2022", "dom"], strict: true, noEmit: true,
   skipLibCheck: true, types: [],
@@ -30,7 +31,7 @@ before(() => {
   writeFileSync(join(folder, "package.json"), `{ "type": "module" }`);
   writeFileSync(join(folder, "tsconfig.json"),
     JSON.stringify({ compilerOptions: OPTIONS, files: ["consumer.ts"] }));
-  copyFileSync(join(import.meta.dirname, "types/consumer.ts"), join(folder, "consumer.ts"));
+  copyFileSync(join(HERE, "types/consumer.ts"), join(folder, "consumer.ts"));
 });
 
 after(() => rmSync(folder, { recursive: true }));

@@ -25,11 +25,11 @@ table && /^\| [a-z]/ {
     gsub(/[a-z_]+/, "h->&", when)
     width = substr(type, 2) / 8
     if (type == "f32" && (range == "2^-20 .. 2^10" || range == "R-CNV-001"))
-        printf "REAL(%s, %s, %d)\n", name, count, range != "R-CNV-001"
+        printf "REAL(%s, %s, %d)\n", name, count, (range != "R-CNV-001")
     else if (type ~ /^[ui](8|16|32)$/ && range ~ /^-?[0-9]+ \.\. [0-9]+$/) {
         split(range, r, " \\.\\. ")
         printf "ELEMENT(%s, %s, %d, %d, %s, %s, %d, %s, %s)\n", name, count, width, \
-            type ~ /^i/, r[1], r[2], has, has ? when : 1, bound
+            (type ~ /^i/), r[1], r[2], has, (has ? when : 1), bound
     } else {
         print "head.awk: cannot read: " $0 > "/dev/stderr"
         bad = 1
