@@ -5,6 +5,9 @@ PAGES_LINK = $(CC) -fopenmp $(LDFLAGS) -Wl,--wrap=ted4_arguments_next $^ -o $@ $
 PAGES_PROG = $(addprefix $B/pages/,$(DEC_PROG) $(ENC_PROG) ted4conf ted4scene \
              ted4tolerance)
 
+# With -flto in CFLAGS, calls within the file would be settled before --wrap can change them.
+$B/ref-decoder/tool/arguments.o: FPFLAGS = $(STRICT) -fno-lto
+
 $(PAGES_PROG): | $B/pages
 $B/pages:
 	@mkdir -p $@
@@ -33,17 +36,17 @@ man: $B/pages/written
 SHARE = $(DESTDIR)$(PREFIX)/share
 ZSH_COMPLETIONS ?= $(PREFIX)/share/zsh/site-functions
 install-pages: man
-	install -d $(SHARE)/man/man1 $(SHARE)/bash-completion/completions \
-	    $(DESTDIR)$(ZSH_COMPLETIONS) $(SHARE)/fish/vendor_completions.d \
-	    $(SHARE)/mime/packages $(SHARE)/ted4
-	install -m 644 $B/man/*.1 $(SHARE)/man/man1
-	install -m 644 $B/completion/bash/ted4dec $(SHARE)/bash-completion/completions
+	install -d "$(SHARE)/man/man1" "$(SHARE)/bash-completion/completions" \
+	    "$(DESTDIR)$(ZSH_COMPLETIONS)" "$(SHARE)/fish/vendor_completions.d" \
+	    "$(SHARE)/mime/packages" "$(SHARE)/ted4"
+	install -m 644 $B/man/*.1 "$(SHARE)/man/man1"
+	install -m 644 $B/completion/bash/ted4dec "$(SHARE)/bash-completion/completions"
 	for p in $(notdir $(filter-out %/ted4dec,$(PAGES_PROG))); do \
-	    ln -sf ted4dec $(SHARE)/bash-completion/completions/$$p || exit; done
-	install -m 644 $B/completion/zsh/* $(DESTDIR)$(ZSH_COMPLETIONS)
-	install -m 644 $B/completion/fish/* $(SHARE)/fish/vendor_completions.d
-	install -m 644 tools/ted4.xml $(SHARE)/mime/packages
-	install -m 644 tools/ted4.magic $(SHARE)/ted4
+	    ln -sf ted4dec "$(SHARE)/bash-completion/completions/$$p" || exit; done
+	install -m 644 $B/completion/zsh/* "$(DESTDIR)$(ZSH_COMPLETIONS)"
+	install -m 644 $B/completion/fish/* "$(SHARE)/fish/vendor_completions.d"
+	install -m 644 tools/ted4.xml "$(SHARE)/mime/packages"
+	install -m 644 tools/ted4.magic "$(SHARE)/ted4"
 
 $B/tests/tools/test_manual: | man $(PROGS) $B/ted4conf $B/ted4tolerance
 .PHONY: man install-pages
