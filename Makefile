@@ -11,7 +11,11 @@ TED4_DATA ?= ../shared/data
 
 WARN  = -Wall -Wextra -Wpedantic -Wshadow -Wstrict-prototypes -Wmissing-prototypes \
         -Wpointer-arith -Wcast-qual -Wwrite-strings -Wconversion -Wno-sign-conversion \
-        -Wundef -Wvla $(WERROR)
+        -Wundef -Wvla $(CALM) $(WERROR)
+# clang 19 counts enumerations that become floats among the mistakes of -Wconversion; gcc has no
+# such warning.
+CALM := $(shell $(CC) -Werror -Wenum-float-conversion -x c -fsyntax-only /dev/null 2>/dev/null && \
+        echo -Wno-enum-float-conversion)
 # The two FP flags are part of the format (spec 12.2): Tier R is strict binary32.
 STRICT = -ffp-contract=off -fno-fast-math
 # Rendering and training: every operation is rounded as it is written, so that all machines and
@@ -40,7 +44,13 @@ FLAGS_v4 = $(FLAGS_v3) -mavx512f -mavx512bw -mavx512dq -mavx512vl -mprefer-vecto
 OBJECTS = $(patsubst %.c,$B/%.o,$(filter-out $(LEVELED),$(1))) \
           $(foreach l,$(LEVELS),$(patsubst %.c,$B/%.$l.o,$(filter $(LEVELED),$(1))))
 CFLAGS_ALL = -std=c11 -D_POSIX_C_SOURCE=200809L $(OPT) -g $(WARN) \
-        -Iref-decoder -Iref-encoder -Itests/support -I. -fopenmp -MMD -MP $(CFLAGS)
+        -Iref-decoder -Iref-encoder -Itests/support -I. -fopenmp -MMD -MP $(FILES64) $(SSE) \
+        $(CPPFLAGS) $(CFLAGS)
+# Files of more than 2 GiB where a long has 32 bits.
+FILES64 = -D_FILE_OFFSET_BITS=64
+# The x87 of older processors keeps more bits than binary32 has, so nothing would be rounded as it
+# is written.
+SSE = $(if $(filter i386 i486 i586 i686,$(MACHINE)),-msse2 -mfpmath=sse)
 LIBS  = -lpng -ljpeg -ljansson -lxxhash -lz -lm
 
 DEC_SRC  = $(sort $(wildcard \
@@ -141,9 +151,10 @@ $(addprefix $B/tests/encoder/test_starved_,trainer writer): override LDFLAGS += 
 test-programs: all $(TESTS)
 
 # What a user builds in order to see something is built on all cores, unless -j says on how many.
-# nproc would take a number of threads for OpenMP as that of cores.
-NPROC = env -u OMP_NUM_THREADS -u OMP_THREAD_LIMIT nproc
-JOBS = $(if $(findstring -j,$(MAKEFLAGS)),,-j$(shell $(NPROC)))
+# nproc would obey OpenMP's variables, and not every system has it.
+CORES = $(shell env -u OMP_NUM_THREADS -u OMP_THREAD_LIMIT nproc 2>/dev/null || \
+        getconf _NPROCESSORS_ONLN 2>/dev/null || echo 2)
+JOBS = $(if $(findstring -j,$(MAKEFLAGS)),,-j$(CORES))
 
 # Lints take seconds. Prints each test program it runs and a closing line of totals.
 test: lint
@@ -159,10 +170,12 @@ lint:
 	@unset POSIXLY_CORRECT; for l in tests/lint/*.sh; do LC_ALL=C sh $$l || exit 1; done
 
 # Both compilers, warnings as errors.
+CLANG_VERSION ?= 14
+CLANG ?= clang-$(CLANG_VERSION)
 BOTH = build-gcc build-clang
 COMPILER_build-gcc   = gcc
-COMPILER_build-clang = clang-14
-BUILD_OF = B=$(1) CC=$(COMPILER_$(1)) WERROR=-Werror
+COMPILER_build-clang = $(CLANG)
+BUILD_OF = B=$(1) CC='$(COMPILER_$(1))' WERROR=-Werror
 $(BOTH): always
 	$(MAKE) $(call BUILD_OF,$@) test-programs
 
@@ -189,15 +202,16 @@ include conformance/conf.mk conformance/reader/reader.mk conformance/cross/cross
 include ref-encoder/mpi/mpi.mk
 include player/player.mk tools/pages/pages.mk tools/packages.mk tests/mutants/mutants.mk
 
-DEPS     = gcc libc6-dev libcmocka-dev libjansson-dev libjpeg62-turbo-dev libpng-dev libxxhash-dev \
+DEPS     = gcc libc6-dev libcmocka-dev libjansson-dev libjpeg-dev libpng-dev libxxhash-dev \
            python3 zlib1g-dev
-DEPS_DEV = clang-14 clang-format-14 llvm-14 libclang-rt-14-dev libomp-14-dev afl++ ffmpeg pandoc \
+DEPS_DEV = clang-$(CLANG_VERSION) clang-format-14 llvm-$(CLANG_VERSION) \
+           libclang-rt-$(CLANG_VERSION)-dev libomp-$(CLANG_VERSION)-dev afl++ ffmpeg pandoc \
            lcov valgrind cmake g++ pkg-config python3-numpy abigail-tools
 SUDO     = $(shell [ "$$(id -u)" = 0 ] || echo sudo)
 INSTALL_DEBIAN = missing=$$(for p in $(1); do \
 	dpkg-query -W -f='$${Status}' $$p 2>/dev/null | grep -q 'ok installed' || echo $$p; done); \
 	if [ -n "$$missing" ]; then $(SUDO) apt-get update -q && \
-	DEBIAN_FRONTEND=noninteractive $(SUDO) apt-get install -y -q --no-install-recommends \
+	$(SUDO) env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends \
 	    $$missing; fi
 deps:
 	@$(call INSTALL_DEBIAN,$(DEPS))
@@ -206,9 +220,11 @@ deps-dev: deps
 
 # The other libraries have no public header.
 PREFIX  ?= /usr/local
-install: all install-library install-pages
-	install -d $(DESTDIR)$(PREFIX)/bin
-	install $(PROGS) $B/ted4conf $B/ted4tolerance $(DESTDIR)$(PREFIX)/bin
+install: install-programs install-library install-pages
+# By itself where the programs are for another machine: pages are written by running them.
+install-programs: all
+	install -d "$(DESTDIR)$(PREFIX)/bin"
+	install $(PROGS) $B/ted4conf $B/ted4tolerance "$(DESTDIR)$(PREFIX)/bin"
 
 # All targets, of the included files too; tests/lint/help.sh sees that none is missing.
 help:
@@ -218,6 +234,6 @@ clean:
 	rm -rf build build-* out
 
 .PHONY: all always test-programs test test-machines test-levels $(BOTH) $(BOTH:%=%-levels)
-.PHONY: demo lint check asan deps deps-dev install help clean
+.PHONY: demo lint check asan deps deps-dev install install-programs help clean
 .SECONDARY:
 -include $(shell find $B -name '*.d' 2>/dev/null)

@@ -56,7 +56,7 @@ conformance-branches: $B/ted4conf
 # Decoding and queries on several threads under ThreadSanitizer: all vectors, and files of nine
 # tiles. Plain kernels too: the sanitizer does not see loads and stores of whole vectors.
 conformance-threads: $B/ted4conf
-	$(MAKE) B=build-tsan CC=clang-14 OPT=-O1 CFLAGS=-fsanitize=thread \
+	$(MAKE) B=build-tsan CC='$(CLANG)' OPT=-O1 CFLAGS=-fsanitize=thread \
 	    LDFLAGS=-fsanitize=thread build-tsan/ted4conf
 	$B/ted4conf gen --demand --only LVL-n_anchors-6 -o build-tsan/nine/vectors
 	for suite in conformance build-tsan/nine; do \
@@ -69,7 +69,7 @@ conformance-mutants:
 	build-mutants/ted4conf gen --demand -o build-mutants/suite/vectors
 	build-mutants/ted4conf mutants -j $(CONF_JOBS) -b build-mutants \
 	    --vectors build-mutants/suite \
-	    --compile '$(CC) -std=c11 -D_POSIX_C_SOURCE=200809L -O1 $(STRICT) -fopenmp' \
+	    --compile '$(CC) -std=c11 -D_POSIX_C_SOURCE=200809L -O1 $(STRICT) $(SSE) -fopenmp' \
 	    --flags '_avx2.c=-mavx2' --flags '_avx512.c=$(AVX512)' --flags '_vnni.c=$(VNNI)' \
 	    --libraries '$(LIBS)'
 

@@ -1,11 +1,11 @@
 #!/bin/sh
 # coverage.sh - how much of the code that each harness tests is reached by its seeds and
 # regressions: fuzz/coverage.sh PROGRAM, where PROGRAM is main.c built by clang for source-based
-# coverage. Writes a table between the marks in fuzz/README.md. The exit status is 1 if a harness is
-# below 80 % of lines.
+# coverage, of version LLVM_VERSION (14). Writes a table between the marks in fuzz/README.md. The
+# exit status is 1 if a harness is below 80 % of lines.
 # SPDX-License-Identifier: BSD-2-Clause
 set -eu
-program=$1
+program=$1 llvm=${LLVM_VERSION:-14}
 work=$(dirname "$program")/coverage
 mkdir -p "$work"
 table=$work/table.md
@@ -24,9 +24,9 @@ sed -n '/^FUZZ(/{
     old=fuzz/regressions/$name
     [ -d "$old" ] || old=
     LLVM_PROFILE_FILE=$work/$name.raw "$program" "$name" "fuzz/corpus/$seeds" $old >&2
-    llvm-profdata-14 merge -sparse "$work/$name.raw" -o "$work/$name.data"
+    "llvm-profdata-$llvm" merge -sparse "$work/$name.raw" -o "$work/$name.data"
     # shellcheck disable=SC2086 # $covers holds patterns
-    llvm-cov-14 report "$program" -instr-profile="$work/$name.data" $covers >"$work/$name.txt"
+    "llvm-cov-$llvm" report "$program" -instr-profile="$work/$name.data" $covers >"$work/$name.txt"
     awk -v name="$name" -v covers="$covers" '$1 == "TOTAL" { sub(/%/, "", $10)
         printf "| `%s` | %s | %d | %.1f %% |\n", name, covers, $8, $10
     }' "$work/$name.txt" >>"$table"

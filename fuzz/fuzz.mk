@@ -82,13 +82,13 @@ FUZZ_MSAN     = $(filter-out colmap transforms calibration hypernerf npy image c
 FUZZ_NO_LINK  = -fsanitize=fuzzer-no-link
 fuzz-build: fuzz-build-$(FUZZ_KIND)
 fuzz-build-asan:
-	$(MAKE) B=build-fuzz-asan CC=clang-14 OPT=-O1 CFLAGS='$(FUZZ_NO_LINK) $(FUZZ_SAN)' \
+	$(MAKE) B=build-fuzz-asan CC='$(CLANG)' OPT=-O1 CFLAGS='$(FUZZ_NO_LINK) $(FUZZ_SAN)' \
 	    LDFLAGS='-fsanitize=address,undefined' $(FUZZERS:%=build-fuzz-asan/fuzz/fuzz_%)
 fuzz-build-msan:
-	$(MAKE) B=build-fuzz-msan CC=clang-14 OPT=-O1 \
+	$(MAKE) B=build-fuzz-msan CC='$(CLANG)' OPT=-O1 \
 	    CFLAGS='$(FUZZ_NO_LINK) -fsanitize=memory -DXXH_INLINE_ALL' \
 	    build-fuzz-msan/fuzz/msan_zlib.o
-	$(MAKE) B=build-fuzz-msan CC=clang-14 OPT=-O1 \
+	$(MAKE) B=build-fuzz-msan CC='$(CLANG)' OPT=-O1 \
 	    CFLAGS='$(FUZZ_NO_LINK) -fsanitize=memory -DXXH_INLINE_ALL' \
 	    LDFLAGS='-fsanitize=memory $(FUZZ_SEEN) build-fuzz-msan/fuzz/msan_zlib.o' \
 	    $(FUZZ_MSAN:%=build-fuzz-msan/fuzz/fuzz_%)
@@ -110,10 +110,10 @@ fuzz-replay:
 	@fuzz/replay.sh build-asan/fuzz/replay
 
 fuzz-coverage:
-	$(MAKE) B=build-fuzz-cov CC=clang-14 OPT=-O1 \
+	$(MAKE) B=build-fuzz-cov CC='$(CLANG)' OPT=-O1 \
 	    CFLAGS='-fprofile-instr-generate -fcoverage-mapping' \
 	    LDFLAGS=-fprofile-instr-generate build-fuzz-cov/fuzz/replay
-	fuzz/coverage.sh build-fuzz-cov/fuzz/replay
+	LLVM_VERSION=$(CLANG_VERSION) fuzz/coverage.sh build-fuzz-cov/fuzz/replay
 
 fuzz-corpus: $B/fuzz/make_corpus
 	$B/fuzz/make_corpus fuzz/corpus

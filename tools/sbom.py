@@ -25,7 +25,7 @@ DEPENDENCIES = {
     "libc6-dev": ("BUILD_DEPENDENCY_OF", "LGPL-2.1-or-later"),
     "libcmocka-dev": ("TEST_DEPENDENCY_OF", "Apache-2.0"),
     "libjansson-dev": ("BUILD_DEPENDENCY_OF", "MIT"),
-    "libjpeg62-turbo-dev": ("BUILD_DEPENDENCY_OF", "IJG AND BSD-3-Clause AND Zlib"),
+    "libjpeg-dev": ("BUILD_DEPENDENCY_OF", "IJG AND BSD-3-Clause AND Zlib"),
     "libpng-dev": ("BUILD_DEPENDENCY_OF", "libpng-2.0"),
     "libxxhash-dev": ("BUILD_DEPENDENCY_OF", "BSD-2-Clause"),
     "python3": ("TEST_DEPENDENCY_OF", "PSF-2.0"),
