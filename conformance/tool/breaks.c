@@ -370,6 +370,7 @@ static void pack(conf_stream *s, const conf_build *b, const conf_line *l)
               fault = !spelt && l->n > 4 ? conf_pack_fault_of(l->word[4]) : -1;
     ted4_blob *blob = blob_of(b, l);
     const size_t head = conf_word_is(l, 2, "NETE") ? b->scene->shape.n_units : 0;
+    const size_t n = (size_t)blob->n;
     uint8_t *bytes;
 
     if (conf_word_is(l, 3, "coded")) {
@@ -378,14 +379,14 @@ static void pack(conf_stream *s, const conf_build *b, const conf_line *l)
     }
     if (!spelt && (way < 0 || fault < 0))
         conf_line_bad(l, "pack REF WAY FAULT");
-    bytes = conf_alloc(blob->n, 4);
-    conf_shuffle(bytes, blob->values, blob->n);
+    bytes = conf_alloc(n, 4);
+    conf_shuffle(bytes, blob->values, n);
     conf_remove(p, head, p->size - head);
     conf_add(p, "\1", 1);
     if (spelt)
-        conf_blocks(p, l, 3, bytes, 4 * blob->n);
+        conf_blocks(p, l, 3, bytes, 4 * n);
     else
-        conf_pack(p, bytes, 4 * blob->n, (conf_pack_way)way, (conf_pack_fault)fault);
+        conf_pack(p, bytes, 4 * n, (conf_pack_way)way, (conf_pack_fault)fault);
     free(bytes);
 }
 

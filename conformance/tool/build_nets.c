@@ -104,7 +104,7 @@ static void random_nete(conf_build *b)
 
 static void zero_nete(conf_build *b)
 {
-    memset(b->scene->nete.values, 0, b->scene->nete.n * sizeof(float));
+    memset(b->scene->nete.values, 0, (size_t)b->scene->nete.n * sizeof(float));
     for (unsigned m = 0; m < b->head.n_slices; m++)
         for (unsigned i = 0; i < layers_of(b, m); i++) {
             const layer l = layer_of(b, m, i);

@@ -10,6 +10,7 @@
 static void pack(conf_build *b, const conf_line *l, ted4_blob *blob)
 {
     const int way = l->n > 2 ? conf_pack_way_of(l->word[2]) : -1;
+    const size_t n = (size_t)blob->n;
     uint8_t *bytes;
     conf_bytes out = { NULL, 0, 0 };
 
@@ -18,10 +19,10 @@ static void pack(conf_build *b, const conf_line *l, ted4_blob *blob)
         conf_line_bad(l, "values that mode 2 does not have");
     if (way < 0)
         return;
-    bytes = conf_alloc(blob->n, 4);
-    conf_shuffle(bytes, blob->values, blob->n);
-    conf_pack(&out, bytes, 4 * blob->n, (conf_pack_way)way, CONF_PACK_GOOD);
-    if (out.size >= 4 * blob->n)
+    bytes = conf_alloc(n, 4);
+    conf_shuffle(bytes, blob->values, n);
+    conf_pack(&out, bytes, 4 * n, (conf_pack_way)way, CONF_PACK_GOOD);
+    if (out.size >= 4 * n)
         conf_line_bad(l, "not shorter than the values themselves");
     blob->mode = TED4_BLOB_DEFLATED;
     blob->deflated = ted4_arena_alloc(&b->scene->arena, out.size, 1);

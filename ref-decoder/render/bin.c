@@ -95,7 +95,7 @@ static int add_up_chunks(bin_job *job, size_t n_chunks)
 
 static size_t digit_of(const bin_job *job, size_t i)
 {
-    return job->from[i] >> job->shift & (((uint64_t)1 << job->digit) - 1);
+    return (size_t)(job->from[i] >> job->shift & (((uint64_t)1 << job->digit) - 1));
 }
 
 static void count_digits(void *arg, size_t part)

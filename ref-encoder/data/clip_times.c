@@ -88,11 +88,11 @@ static int number_clip(ted4_clip *clip, const ted4_clips *c)
         return -1;
     for (size_t i = 0; i < n; i++) {
         const uint64_t frame = counted ? (number_of(clip, i) - c->base) / c->step : i;
-        clip->frames = frame + 1;
-        if (c->most > 0 && clip->frames > c->most) {
+        if (c->most > 0 && frame >= c->most) {
             clip->frames = c->most;
             free(clip->pictures.names[i]);
         } else {
+            clip->frames = (size_t)frame + 1;
             clip->frame[kept] = (uint32_t)frame;
             clip->pictures.names[kept++] = clip->pictures.names[i];
         }

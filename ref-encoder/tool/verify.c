@@ -12,7 +12,7 @@
 static int blob_differs(const ted4_blob *a, const ted4_blob *b)
 {
     return a->n != b->n ||
-           (a->n > 0 && memcmp(a->values, b->values, a->n * sizeof *a->values) != 0);
+           (a->n > 0 && memcmp(a->values, b->values, (size_t)a->n * sizeof *a->values) != 0);
 }
 
 static int type_differs(const ted4_scene *a, const ted4_scene *b, int type)

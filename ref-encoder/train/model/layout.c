@@ -20,6 +20,6 @@ void ted4_layout_make(ted4_layout *l, const ted4_header *h)
     l->n_channels = l->temporal_logit + 1;
     l->netr = 0;
     l->bank = l->netr + l->shape.n_netr;
-    l->nete = l->bank + l->shape.n_bank;
+    l->nete = l->bank + (size_t)l->shape.n_bank;
     l->n_net = l->nete + l->shape.n_nete;
 }

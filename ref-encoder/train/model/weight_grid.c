@@ -47,5 +47,5 @@ void ted4_weight_grid_scene(const ted4_shape *s, const int *bits, float *netr, f
                       bits[i == TED4_NET_PROJECT || i == TED4_NET_DEFORM ? TED4_WEIGHT_GRID_MOTION
                                                                          : TED4_WEIGHT_GRID_HEADS],
                       netr);
-    ted4_weight_grid_round(bank, s->n_bank, bits[TED4_WEIGHT_GRID_BANK]);
+    ted4_weight_grid_round(bank, (size_t)s->n_bank, bits[TED4_WEIGHT_GRID_BANK]);
 }

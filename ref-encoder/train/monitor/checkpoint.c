@@ -239,7 +239,7 @@ static void walk_good(stream *s, ted4_trainer *t)
     put(s, &size, sizeof size);
     put(s, &w->good_at, sizeof w->good_at);
     if (s->writing) {
-        put(s, w->good.bytes, size);
+        put(s, w->good.bytes, (size_t)size);
         return;
     }
     ted4_monitor_forget(t);

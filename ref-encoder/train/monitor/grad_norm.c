@@ -84,7 +84,7 @@ static int ranges_of(const ted4_layout *l, int term, range *r)
                 r[n++] = (range) { l->netr + l->shape.netr[i].first,
                                    ted4_network_size(&l->shape.netr[i]) };
     if (term == TED4_TERM_BANK)
-        r[n++] = (range) { l->bank, l->shape.n_bank };
+        r[n++] = (range) { l->bank, (size_t)l->shape.n_bank };
     if (term == TED4_TERM_PRIOR)
         r[n++] = (range) { l->nete, l->shape.n_nete };
     if (term == TED4_TERM_STEP) {

@@ -128,7 +128,7 @@ int ted4_schedule_network(const ted4_trainer *t, ted4_net_range *range)
             make_range(t, l->netr + s->first, ted4_network_size(s),
                        is_motion ? rate_on_weight_grid(t, TED4_WEIGHT_GRID_MOTION, motion) : heads);
     }
-    range[n++] = make_range(t, l->bank, l->shape.n_bank,
+    range[n++] = make_range(t, l->bank, (size_t)l->shape.n_bank,
                             rate_on_weight_grid(t, TED4_WEIGHT_GRID_BANK, motion));
     if (t->phase.stage2 && !t->phase.integer)
         range[n++] =

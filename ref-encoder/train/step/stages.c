@@ -175,7 +175,7 @@ static void remap_networks(const ted4_layout *from, const ted4_layout *to, const
         memcpy(new + to->netr + s->first, old + from->netr + from->shape.netr[i].first,
                ted4_network_size(s) * sizeof *new);
     }
-    memcpy(new + to->bank, old + from->bank, to->shape.n_bank * sizeof *new);
+    memcpy(new + to->bank, old + from->bank, (size_t)to->shape.n_bank * sizeof *new);
 }
 
 int ted4_stage_relayout(ted4_trainer *t, const ted4_header *h)
