@@ -5,7 +5,7 @@ import os
 from . import capacity_misses
 from .bars import Bars, First
 from .capacity_cost import Costs, temporal, weight_bits
-from .compare import is_mixed
+from .compare import is_mixed, of_one_encoder
 from .earlier import earlier
 from .notes import read_notes
 from .plot import Plot
@@ -29,7 +29,6 @@ SETTINGS = {
              "and a still smaller entropy model",
     "static": "as *lean*, without time",
 }
-TWO_ENCODERS = "the rows are of two encoders"
 
 
 def write(runs, charts, results, _):
@@ -159,9 +158,7 @@ def still_bar(runs, bars, scene):
               and (best is None or auto.count("bytes") < best.count("bytes")))
         if ok and not all(run.has() for run in fixed_runs):
             ok = None
-        text += mark([auto] + fixed_runs)
-        if is_mixed([run for run in [auto] + fixed_runs if run.has()]):
-            ok, text = "?", f"{text}; {TWO_ENCODERS}"
+        ok, text = of_one_encoder(ok, text, [auto] + fixed_runs)
     bars.add(5, f"{scene}: syntax for time, size",
              f"none; smaller than any fixed setting of equal PSNR ({EQUAL_PSNR} dB)", text, ok,
              command(f"'{scene}-*'"))
@@ -175,9 +172,7 @@ def things_bar(bars, costs):
              and all(a < b for a, b in zip(known, known[1:])))
     ok = False if known and not grows else True if len(known) == len(means) else None
     autos = [run for scene in THINGS for run in costs.runs.present(scene, "auto")]
-    measured = ", ".join(f"{value:.0f}" for value in known) + mark(autos)
-    if ok is not None and is_mixed(autos):
-        ok, measured = "?", f"{measured}; {TWO_ENCODERS}"
+    ok, measured = of_one_encoder(ok, ", ".join(f"{value:.0f}" for value in known), autos)
     bars.add(6, "bytes for time with 0, 1, 2, 4, 8 moving things, mean over seeds",
              "0 first, then more and more", measured, ok,
              command("'things*-auto-*'"), first_things(costs.runs) if ok is not None else None)

@@ -3,6 +3,7 @@ SPDX-License-Identifier: BSD-2-Clause"""
 import math
 
 from . import curves
+from .rows import mark
 from .words import signed
 
 
@@ -33,6 +34,15 @@ def base_rows(runs, run, against=None):
 def is_mixed(rows):
     """Did the present sources make some of these rows, and others the rest?"""
     return len({run.is_old() for run in rows}) > 1
+
+
+def of_one_encoder(ok, text, rows):
+    """A verdict and what it is about, with the mark of the rows behind them: cannot be said where
+    the present sources made only some of these."""
+    there = [run for run in rows if run.has()]
+    if ok is not None and is_mixed(there):
+        return "?", f"{text}{mark(there)}; the rows are of two encoders"
+    return ok, text and text + mark(there)
 
 
 def rate_change(runs, run, against=None):
@@ -129,9 +139,10 @@ def whole_run(runs, scene, seed):
 
 def seed_spread(runs, scene):
     """Greatest less least of seeds 1 to 3, by column, so that scenes with more of them compare;
-    share: of the bytes, percent of the least. None when one is missing."""
+    share: of the bytes, percent of the least. None when one is missing, or the present sources made
+    only some of them."""
     three = [whole_run(runs, scene, seed) for seed in (1, 2, 3)]
-    if not all(run.has() for run in three):
+    if not all(run.has() for run in three) or is_mixed(three):
         return None
     spread = {}
     for column in ("psnr", "ssim", "bytes", "anchors"):

@@ -2,7 +2,7 @@
 SPDX-License-Identifier: BSD-2-Clause"""
 import math
 
-from .compare import psnr_change, whole_run
+from .compare import is_mixed, psnr_change, whole_run
 from .rows import mark
 from .significance import LEVEL, holm, student_tail
 from .words import fixed, signed
@@ -44,8 +44,9 @@ class Seeded:
 
     def change(self, runs, run, other):
         """PSNR of a run less that of another, had both as many bytes: along the curve of the base
-        at seed 1. None where one is missing or the curve does not reach."""
-        if not run.has() or not other.has():
+        at seed 1. None where one is missing, the curve does not reach, or the present sources made
+        one of them only."""
+        if not run.has() or not other.has() or is_mixed([run, other]):
             return None
         of_run, of_other = (psnr_change(runs, one, self.base) for one in (run, other))
         return None if of_run is None or of_other is None else of_run - of_other

@@ -5,9 +5,9 @@ import os
 from . import stability_beside as beside
 from . import stability_tables as tables
 from .bars import DELIVERED, Bars, First
+from .compare import is_mixed, of_one_encoder
 from .earlier import earlier
 from .notes import read_notes
-from .rows import mark
 from .stability_marks import draw
 from .stability_rules import RULES, Cell
 from .words import Page, signed
@@ -124,9 +124,11 @@ def come_bars(lab):
         if whole.mean("worst") is not None and without.mean("worst") is not None:
             gain = whole.mean("worst") - without.mean("worst")
         complete = has_three(whole) and has_three(without)
+        ok, measured = of_one_encoder(
+            gain >= LEAST_GAIN if complete and gain is not None else None,
+            signed(gain, 2, " dB"), whole.wanted + without.wanted)
         lab.bars.add(2, f"{scene}: worst frame, whole method above no activation", "at least 1 dB",
-                     signed(gain, 2, " dB") + mark(whole.wanted),
-                     gain >= LEAST_GAIN if complete and gain is not None else None,
+                     measured, ok,
                      command(f"'{scene}-whole-*' '{scene}-noactive-*'"))
     thrown_bar(lab)
 
@@ -144,10 +146,12 @@ def thrown_bar(lab):
         with_it, without = (sum(both[i] for both in out.values()) for i in (0, 1))
         more = any(a > b for a, b in out.values())
         ok = "?" if with_it + without == 0 else with_it < without and not more
+    ok, measured = of_one_encoder(
+        ok, ", ".join(f"{scene} {a:.1f} against {b:.1f}" for scene, (a, b) in out.items()),
+        [run for pair in pairs for cell in pair for run in cell.wanted])
     lab.bars.add(2, "anchors thrown out of view where things come, go or hide, means over seeds",
-                 "fewer than without activation, and in no scene more",
-                 ", ".join(f"{scene} {a:.1f} against {b:.1f}" for scene, (a, b) in out.items()),
-                 ok, command("'*-whole-*' '*-noactive-*'"), first_thrown(lab))
+                 "fewer than without activation, and in no scene more", measured, ok,
+                 command("'*-whole-*' '*-noactive-*'"), first_thrown(lab))
 
 
 def first_thrown(lab):
@@ -158,7 +162,8 @@ def first_thrown(lab):
         if not all(map(has_three, cells)):
             return None
         ours, theirs = (cell.mean("out") or 0 for cell in cells)
-        verdicts[scene] = "?" if ours + theirs == 0 else ours < theirs
+        mixed = is_mixed(run for cell in cells for run in cell.there)
+        verdicts[scene] = "?" if mixed or ours + theirs == 0 else ours < theirs
     found = list(verdicts.values())
     if not found:
         return None
@@ -190,15 +195,16 @@ def seed_bars(lab):
     easy = [lab.cell(scene, "whole") for scene in lab.in_group("easy")]
     spreads = {cell.scene: cell.spread() for cell in easy if cell.spread() is not None}
     worst = max(spreads.values(), default=None)
-    lab.bars.add(3, "spread of mean PSNR between seeds, easy scenes", "below 0.3 dB",
-                 spread_text(spreads),
-                 None if worst is None else False if worst >= MOST_SEED_SPREAD
-                 else True if all(map(has_three, easy)) else None, command("easy"),
-                 first_easy(lab))
+    ok, measured = of_one_encoder(
+        None if worst is None else False if worst >= MOST_SEED_SPREAD
+        else True if all(map(has_three, easy)) else None,
+        spread_text(spreads), [run for cell in easy for run in cell.wanted])
+    lab.bars.add(3, "spread of mean PSNR between seeds, easy scenes", "below 0.3 dB", measured, ok,
+                 command("easy"), first_easy(lab))
     again = [(lab.runs.first(scene, "again"), lab.runs.first(scene, "whole"))
              for scene in lab.scenes if lab.runs.of(scene, "again")]
     compared = [(a, b) for a, b in again
-            if a.has() and b.has() and not a.is_old() and not b.is_old()]
+                if a.has() and b.has() and not a.is_old() and not b.is_old()]
     same = sum(a.text("hash") == b.text("hash") and a.text("bytes") == b.text("bytes")
                for a, b in compared)
     lab.bars.add(3, "the same seed trained twice", "the same bytes",

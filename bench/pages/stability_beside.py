@@ -1,6 +1,7 @@
 """Tables of what the stability lab trains beside its scenes and variants: other initial points,
 single parts left out, other cameras.
 SPDX-License-Identifier: BSD-2-Clause"""
+from .compare import is_mixed
 from .rows import mark
 from .stability_tables import quality_cell
 from .words import fixed, signed
@@ -27,14 +28,17 @@ def points_section(lab):
             continue
         page.row(plain.scene, *(fixed(one.mean("psnr"), 2) + " / " + fixed(one.mean("worst"), 2)
                                 + mark(one.wanted) for one in (plain, cell)),
-                 signed(cell.mean("psnr") - plain.mean("psnr"), 2))
+                 "-" if is_mixed(cell.there + plain.there)
+                 else signed(cell.mean("psnr") - plain.mean("psnr"), 2))
 
 
 def paired(cell, other_cell):
-    """The runs of two cells that have the same seed and ended with a file: [(one, other)]."""
+    """The runs of two cells that have the same seed, sources of the same kind, and ended with a
+    file: [(one, other)]."""
     pairs = [(run, other) for run in cell.there for other in other_cell.there
              if run.place == other.place]
-    return [pair for pair in pairs if all(run.text("status") == "fine" for run in pair)]
+    return [pair for pair in pairs
+            if all(run.text("status") == "fine" for run in pair) and not is_mixed(pair)]
 
 
 def difference_cell(cell, other_cell):
@@ -44,7 +48,8 @@ def difference_cell(cell, other_cell):
         return "-"
     psnr = sum(a.number("psnr") - b.number("psnr") for a, b in pairs) / len(pairs)
     size = sum(a.number("bytes") / b.number("bytes") - 1 for a, b in pairs) / len(pairs)
-    return (f"{signed(psnr, 2)}; {signed(100 * size, 1, ' %')}" + mark(cell.wanted)
+    return (f"{signed(psnr, 2)}; {signed(100 * size, 1, ' %')}"
+            + mark(cell.there + other_cell.there)
             + (f" ({len(pairs)} of {len(cell.wanted)})" if len(pairs) < len(cell.wanted) else ""))
 
 

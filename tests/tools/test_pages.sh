@@ -28,11 +28,12 @@ page report report.md report-tables.md charts
 page capacity capacity.md capacity
 page stability stability.md lab
 page zoo zoo.md
+page bd_rate bd_rate.md
 
 # A key is the hash of the options, a hyphen, and the hash of the sources; of what judges too, where
 # that is not the sources.
 # Those of machines.csv have one hash of both.
-for csv in sweep capacity stability zoo machines; do
+for csv in sweep capacity stability zoo bd_rate machines; do
     if [ $csv = machines ]; then key='[0-9a-f]+'; else key='[0-9a-f]+-[0-9a-f]+(\.[0-9a-f]+)?'; fi
     bad_rows=$(awk -F, -v key="^$key\$" '
         NR == 1 { for (i = 1; i <= NF; i++) if ($i == "key") c = i; if (!c) print "no key"; next }

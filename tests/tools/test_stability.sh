@@ -205,6 +205,16 @@ cp "$page" "$out/first.md"
 make_page && cmp -s "$page" "$out/first.md" && ok same_bytes ||
     fail same_bytes "the second page differs"
 
+# Rows of two encoders are not compared, and the marks of both sides stand beside what is measured.
+sed -i 's/^done \(wall-noactive.*\)/older \1/; s/^done \(calm-whole-3\)/older \1/' "$out/states"
+make_page
+check two_encoders "$page" \
+    '| 2 | wall: worst frame, whole method above no activation | at least 1 dB | +1.50 dB†; the rows are of two encoders | cannot be said |' \
+    '| wall 1.0 against 3.0†; the rows are of two encoders | cannot be said; as first defined: cannot' \
+    '| below 0.3 dB | calm 0.20 dB†; the rows are of two encoders | cannot be said; as first' \
+    '| calm | 33.10† | -0.50; -10.0 %† (1 of 2) |'
+sed -i 's/^older /done /' "$out/states"
+
 # Notes on rules explain a failure when all of its rules have one.
 rules_explained gap
 make_page

@@ -3,7 +3,7 @@
 A finding is a function of the report; it returns its text and the runs behind it, or None while one
 of them is missing.
 SPDX-License-Identifier: BSD-2-Clause"""
-from ..compare import Change, base_of, seed_spread, whole_run, within_seeds
+from ..compare import Change, base_of, is_mixed, seed_spread, whole_run, within_seeds
 from ..rows import mark
 from ..seeded import Seeded
 from ..words import anchor, fixed, signed
@@ -146,7 +146,7 @@ def still(report):
     pairs = [(scene, *(report.runs.find(f"{scene}-{variant}-2") for variant in
                        ("whole", "static"))) for scene in ("still", "chair")]
     rows = [run for _, *both in pairs for run in both]
-    if not all(run.has() for run in rows):
+    if not all(run.has() for run in rows) or any(is_mixed(both) for _, *both in pairs):
         return None
     spent = sum(singles.for_time(whole) for _, whole, _ in pairs)
     most = max(abs(singles.rate_against(whole, static)) for _, whole, static in pairs)

@@ -3,7 +3,7 @@ SPDX-License-Identifier: BSD-2-Clause"""
 import os
 
 from ..bars import First
-from ..compare import is_mixed
+from ..compare import is_mixed, of_one_encoder
 from ..rows import mark
 from ..stacks import Stacks
 from ..words import percent
@@ -97,10 +97,8 @@ def bar(report):
         text = (f"fast (kitchen): {shares_text(fast)}, light by short lives "
                 f"{percent(fast.number('short_changed'), 1)} where it changes, "
                 f"{percent(fast.number('short_same'), 1)} elsewhere; "
-                f"slow (dog): {shares_text(slow)}"
-                + mark([slow, fast]))
-        if is_mixed([fast, slow]):
-            ok, text = "?", text + "; the rows are of two encoders"
+                f"slow (dog): {shares_text(slow)}")
+        ok, text = of_one_encoder(ok, text, [fast, slow])
     report.bars.add(6, "activation spans up to 0.2 / between / 0.8 and more, and heat maps",
                     "short spans where things come and go (light by short lives at least ten times "
                     "that elsewhere); more of them in the fast scene", text, ok,

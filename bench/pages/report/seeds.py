@@ -1,7 +1,7 @@
 """The spread that the seed alone makes: bar 11; and small differences over seeds.
 SPDX-License-Identifier: BSD-2-Clause"""
 from ..bars import DELIVERED
-from ..compare import seed_spread, whole_run
+from ..compare import is_mixed, seed_spread, whole_run
 from ..plot import Plot, panels
 from ..rows import mark
 from ..seeded import Seeded, seeded_variants
@@ -118,7 +118,8 @@ def recipe_section(report):
 def recipe_row(report, scene, variant):
     page, runs, changed = report.tables, report.runs, variant[len("recipe_"):]
     seeded = Seeded(runs, scene, variant)
-    if not all(run.has() and base.has() for run, base in seeded.pairs):
+    if not all(run.has() and base.has() and not is_mixed([run, base])
+               for run, base in seeded.pairs):
         page.row_missing(scene, changed)
         return
     both = [(run.count("psnr") - base.count("psnr"),

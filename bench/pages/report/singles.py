@@ -83,7 +83,8 @@ def still_section(report):
         still_row(page, static)
     spent = [(scene, run) for scene, run, _ in pairs if run.has()]
     both = [(scene, rate_against(whole, static), mark([whole, static]))
-            for scene, whole, static in pairs if whole.has() and static.has()]
+            for scene, whole, static in pairs
+            if whole.has() and static.has() and not is_mixed([whole, static])]
     report.bars.add(4, "still and chair: bank, temporal feature, activation, temporal mask",
                     "not one byte", "; ".join(
                         f"{scene}: {for_time(run):.0f} bytes"
@@ -111,6 +112,9 @@ def for_time(run):
 
 
 def rate_against(run, other):
+    """Percent; None where the present sources made only one of them."""
+    if is_mixed([run, other]):
+        return None
     return 100 * (run.count("bytes") / other.count("bytes") - 1)
 
 
@@ -121,7 +125,7 @@ def still_row(page, run, other=None):
         return
     against = ""
     if other is not None and other.has():
-        against = (signed(rate_against(run, other), 2, " %, ")
+        against = (signed(rate_against(run, other), 2, " %") + ", "
                    + signed(difference(run, other), 2, " dB"))
     page.row(run.name(), *cells(run, "psnr:2 bytes b_bank b_phi b_tau"),
              "yes" if run.count("temporal_mask") else "no", against)
