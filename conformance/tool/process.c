@@ -12,20 +12,12 @@
 #include <string.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
-#include <time.h>
 #include <unistd.h>
+#include "tool/clock.h"
 
 enum { MAX_ARGUMENTS = 24, MAX_PROCESSES = 256 };
 /* A pipe is read in pieces of 16 KiB and holds 64 KiB (pipe(7)). */
 enum { PIECE = 1 << 14, PIECES = 4 };
-
-static double seconds(void)
-{
-    struct timespec t;
-
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 static _Noreturn void child(const conf_process_options *o, const char *const *argv, int out,
                             int err)
@@ -74,7 +66,7 @@ void conf_process_start(conf_process *p, const conf_process_options *o, const ch
         fcntl(err[i], F_SETFD, FD_CLOEXEC);
     }
     p->options = o;
-    p->started = seconds();
+    p->started = ted4_clock();
     p->pid = fork();
     if (p->pid < 0)
         conf_die("fork: %s", strerror(errno));
@@ -126,7 +118,7 @@ static void finish(conf_process *p, conf_process_end end)
         close(p->out);
     if (p->err >= 0)
         close(p->err);
-    p->ms = 1e3 * (seconds() - p->started);
+    p->ms = 1e3 * (ted4_clock() - p->started);
     p->end = end == CONF_ENDED && WIFSIGNALED(status) ? CONF_CRASHED : end;
     p->code = WIFSIGNALED(status) ? WTERMSIG(status) : WEXITSTATUS(status);
     p->pid = 0;
@@ -177,7 +169,7 @@ static int look(conf_process *p, const struct pollfd *f)
         finish(p, CONF_ENDED);
         return 1;
     }
-    if (seconds() - p->started > p->options->timeout) {
+    if (ted4_clock() - p->started > p->options->timeout) {
         finish(p, CONF_HUNG);
         return 1;
     }

@@ -8,10 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <time.h>
 #include <unistd.h>
 #include "judge_t.h"
 #include "recipe.h"
+#include "tool/clock.h"
 #include "vector.h"
 
 typedef enum { RUN_FIRST, RUN_SECOND, RUN_LENIENT } run_kind;
@@ -243,19 +243,11 @@ static int same_answer(const runner *w, const slot *s, const json_t *answer)
     return same;
 }
 
-static double seconds(void)
-{
-    struct timespec t;
-
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 /* Judges an answer by the expectation for this kind of run. */
 static void judge(runner *w, const slot *s, const json_t *answer, conf_verdict *v)
 {
     const json_t *const d = w->r->entry[s->entry].descriptor;
-    const double now = seconds();
+    const double now = ted4_clock();
 
     if (s->run != RUN_SECOND)
         conf_judge(w->r->capabilities, d, answer, v);
@@ -268,7 +260,7 @@ static void judge(runner *w, const slot *s, const json_t *answer, conf_verdict *
         conf_judge_salvage(w->r->capabilities, d, answer, v);
     if (v->outcome == CONF_PASS && conf_class_t_asked(w->r->capabilities, d)) {
         conf_judge_class_t(&s->file, d, answer, s->dump, v);
-        conf_process_excuse(w->process, w->r->options->jobs, seconds() - now);
+        conf_process_excuse(w->process, w->r->options->jobs, ted4_clock() - now);
     }
 }
 

@@ -8,6 +8,7 @@
 #include "base/bytes.h"
 #include "cli.h"
 #include "output.h"
+#include "turn.h"
 
 /* ---- checks before anything is written ---- */
 

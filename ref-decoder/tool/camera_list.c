@@ -12,9 +12,8 @@
 #include "rotation.h"
 
 #include "camera_transforms.h"
+#include "cams.h"
 #include "json_file.h"
-
-enum { MAX_SIDE = 16384, TIME_DENOMINATOR = 10000000 };
 
 static int get_number(const json_t *o, const char *key, float *out)
 {
@@ -45,7 +44,7 @@ static int get_side(const json_t *o, const char *key, int *out)
     const json_t *const v = json_object_get(o, key);
     const json_int_t n = json_integer_value(v);
 
-    if (!json_is_integer(v) || n < 1 || n > MAX_SIDE)
+    if (!json_is_integer(v) || n < 1 || n > TED4_CAMS_SIDE)
         return 0;
     *out = (int)n;
     return 1;
@@ -73,7 +72,7 @@ static int get_time(const json_t *o, ted4_listed_camera *c)
 
     if (!json_is_number(time) || !(t >= 0.0 && t <= 1.0))
         return 0;
-    c->time = (ted4_time) { (uint32_t)(t * TIME_DENOMINATOR + 0.5), TIME_DENOMINATOR };
+    c->time = ted4_time_of_part(t);
     return 1;
 }
 

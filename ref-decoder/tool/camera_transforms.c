@@ -9,10 +9,9 @@
 #include <sys/stat.h>
 
 #include "camera_lens.h"
+#include "cams.h"
 #include "output.h"
 #include "rotation.h"
-
-enum { MAX_SIDE = 16384, TIME_DENOMINATOR = 10000000 };
 
 typedef struct {
     const json_t *file;
@@ -91,7 +90,7 @@ static int find_size(const transforms *t, const json_t *frame, double *w, double
 
 static int is_side(double v)
 {
-    return v >= 1.0 && v <= MAX_SIDE && v == floor(v);
+    return v >= 1.0 && v <= TED4_CAMS_SIDE && v == floor(v);
 }
 
 static const char *get_lens(const transforms *t, const json_t *frame, ted4_view *v, int *distorted)
@@ -160,7 +159,7 @@ static const char *get_time(const json_t *frame, ted4_listed_camera *c)
         return NULL;
     if (!json_is_number(time) || !(t >= 0.0 && t <= 1.0))
         return "has a time that is not from 0 to 1";
-    c->time = (ted4_time) { (uint32_t)(t * TIME_DENOMINATOR + 0.5), TIME_DENOMINATOR };
+    c->time = ted4_time_of_part(t);
     return NULL;
 }
 

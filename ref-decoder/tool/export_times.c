@@ -10,6 +10,7 @@
 #include "json_string.h"
 #include "output.h"
 #include "sample.h"
+#include "turn.h"
 
 /* Prints how view-dependent values are written, because the format cannot hold them as they are. */
 static void announce_export(ted4_session *s, const ted4_sampler *how)

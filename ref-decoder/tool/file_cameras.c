@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "chunks.h"
+#include "turn.h"
 
 void ted4_file_up(const uint8_t *file, size_t size, float up[3])
 {
@@ -15,7 +16,7 @@ void ted4_file_up(const uint8_t *file, size_t size, float up[3])
     memset(up, 0, 3 * sizeof *up);
     for (size_t at = TED4_FILE_HEADER; ted4_chunks_next(file, size, &at, &chunk);)
         if (strcmp(chunk.type, "CAMS") == 0 && ted4_cams_read(chunk.payload, chunk.size, &c) == 0 &&
-            (c.up[0] != 0 || c.up[1] != 0 || c.up[2] != 0))
+            ted4_has_direction(c.up))
             memcpy(up, c.up, sizeof c.up);
 }
 

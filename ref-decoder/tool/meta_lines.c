@@ -72,9 +72,11 @@ static void put(sink *to, const uint8_t *line, size_t n)
         return;
     n = n < MOST ? n : MOST;
     memset(text, '?', n);
-    for (size_t i = 0, bytes; i<n; i += bytes> 0 ? bytes : 1) {
-        bytes = character(line + i, n - i);
+    for (size_t i = 0; i < n;) {
+        const size_t bytes = character(line + i, n - i);
+
         memcpy(text + i, line + i, bytes);
+        i += bytes > 0 ? bytes : 1;
     }
     text[n] = 0;
     to->n++;

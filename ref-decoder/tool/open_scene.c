@@ -6,10 +6,10 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
-#include <time.h>
 
 #include "actions.h"
 #include "cli.h"
+#include "clock.h"
 #include "file_cameras.h"
 
 static void print_element(void *user, size_t offset, const char *element, int64_t index,
@@ -17,14 +17,6 @@ static void print_element(void *user, size_t offset, const char *element, int64_
 {
     (void)user;
     printf("%zu %s[%" PRId64 "] = %" PRId64 "\n", offset, element, index, value);
-}
-
-static double seconds(void)
-{
-    struct timespec t;
-
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
 /* Reports the contents of the file, and the time and memory used to decode it to attributes.
@@ -112,7 +104,7 @@ int ted4_action_open(ted4_session *s)
     ted4_salvage what;
     size_t size;
     uint8_t *const data = ted4_read_file(set->input, &size);
-    const double start = seconds();
+    const double start = ted4_clock();
     int code = TED4_EXIT_FINE;
 
     s->data = data;
@@ -132,7 +124,7 @@ int ted4_action_open(ted4_session *s)
         ted4_scene_free(scene);
     }
     if (e.code == TED4_OK)
-        tell_cost(s, size, 1e3 * (seconds() - start));
+        tell_cost(s, size, 1e3 * (ted4_clock() - start));
     else
         code = ted4_report("ted4dec", set->input, &e, set->json);
     return code;

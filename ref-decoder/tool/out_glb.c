@@ -19,7 +19,7 @@
 
 enum {
     GLTF_FLOAT = 5126,
-    GLTF_SHORT = 5123,
+    GLTF_UNSIGNED_SHORT = 5123,
     MAX_ATTRIBUTES = 5 + TED4_SH_MAX_COEFS,
     GLB_HEADER = 12,
     GLB_CHUNK = 8
@@ -29,7 +29,7 @@ enum {
 typedef struct glb_attribute {
     char name[64];
     const char *type;
-    int component; /* GLTF_FLOAT, or GLTF_SHORT (unsigned) normalised */
+    int component; /* GLTF_FLOAT, or GLTF_UNSIGNED_SHORT normalised */
     int coef;      /* index of the coefficient of spherical harmonics */
     size_t size;   /* bytes per Gaussian, a multiple of 4 */
     void (*fill)(uint8_t *out, const ted4_frame *x, size_t i, const struct glb_attribute *a);
@@ -111,7 +111,7 @@ static int list_attributes(glb_attribute *a, int sh_degree)
 {
     static const glb_attribute fixed[] = {
         { "POSITION", "VEC3", GLTF_FLOAT, 0, 12, glb_position },
-        { "COLOR_0", "VEC4", GLTF_SHORT, 0, 8, glb_colour },
+        { "COLOR_0", "VEC4", GLTF_UNSIGNED_SHORT, 0, 8, glb_colour },
         { "KHR_gaussian_splatting:ROTATION", "VEC4", GLTF_FLOAT, 0, 16, glb_rotation },
         { "KHR_gaussian_splatting:SCALE", "VEC3", GLTF_FLOAT, 0, 12, glb_scale },
         { "KHR_gaussian_splatting:OPACITY", "SCALAR", GLTF_FLOAT, 0, 4, glb_opacity },
@@ -184,7 +184,7 @@ static void say_mesh(glb_json *j, const ted4_frame *x, const glb_attribute *a, i
             i == 0 ? "" : ",", i, a[i].component, x->n, a[i].type);
         if (i == 0)
             say_bounds(j, x);
-        say(j, "%s}", a[i].component == GLTF_SHORT ? ",\"normalized\":true" : "");
+        say(j, "%s}", a[i].component == GLTF_UNSIGNED_SHORT ? ",\"normalized\":true" : "");
     }
     say(j, "],\"bufferViews\":[");
     for (int i = 0; i < n; i++, at += a[i - 1].size * x->n)

@@ -52,11 +52,6 @@ void ted4_session_append(json_t *report, const char *key, json_t *value)
     json_array_append_new(list, value);
 }
 
-int ted4_has_direction(const float v[3])
-{
-    return v[0] != 0 || v[1] != 0 || v[2] != 0;
-}
-
 const float *ted4_session_up(const ted4_session *s)
 {
     return s->set->auto_up ? s->up : s->set->up;

@@ -31,8 +31,6 @@ size_t ted4_session_times(const ted4_session *s);
  * name. */
 ted4_time ted4_session_time(const ted4_session *s, size_t i, uint32_t *number);
 
-/* Returns 1 if v is not 0 0 0. */
-int ted4_has_direction(const float v[3]);
 /* Returns the direction of the scene that exports turn up; 0 0 0: they are not turned. */
 const float *ted4_session_up(const ted4_session *s);
 

@@ -8,6 +8,7 @@
 
 #include "cli.h"
 #include "output.h"
+#include "turn.h"
 
 static int refuse(const char *options, const char *why)
 {
@@ -27,7 +28,7 @@ static int check_needs(const ted4_settings *s)
 {
     const int exports = s->output != NULL, queries = exports || s->hash;
     const int n_cameras = (s->cameras != NULL) + (s->path != NULL) + (s->orbit > 0);
-    const int turns = s->auto_up || s->up[0] != 0 || s->up[1] != 0 || s->up[2] != 0;
+    const int turns = s->auto_up || ted4_has_direction(s->up);
 
     if (s->render != NULL && n_cameras != 1)
         return refuse("--render", "goes with one of --camera, --orbit and --path");

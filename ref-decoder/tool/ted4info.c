@@ -18,6 +18,7 @@
 #include "json_string.h"
 #include "ted4.h"
 #include "threads.h"
+#include "turn.h"
 #include "meta_lines.h"
 
 enum {
@@ -276,7 +277,7 @@ static void cams_text(const ted4_chunk_view *chunk, char *text, size_t size)
 
     if (ted4_cams_read(chunk->payload, chunk->size, &c) != 0)
         snprintf(text, size, "not as specified");
-    else if (c.up[0] != 0 || c.up[1] != 0 || c.up[2] != 0)
+    else if (ted4_has_direction(c.up))
         snprintf(text, size, "%zu %s, up %.4g %.4g %.4g", c.n,
                  c.kind == TED4_CAMS_PATH ? "cameras of a path" : "cameras", (double)c.up[0],
                  (double)c.up[1], (double)c.up[2]);

@@ -178,6 +178,13 @@ ted4_time ted4_time_of_seconds(ted4_seconds s, uint32_t n_frames, uint32_t rate_
     return is_above(den, num) ? query(num, den) : (ted4_time) { 1, 1 };
 }
 
+ted4_time ted4_time_of_part(double part)
+{
+    enum { STEPS = 10000000 }; /* 10^MAX_DECIMALS, so that a part is as exact as a text */
+
+    return (ted4_time) { (uint32_t)(part * STEPS + 0.5), STEPS };
+}
+
 ted4_time ted4_time_of_frame(uint32_t frame, uint32_t n_frames)
 {
     uint64_t num = frame, den = n_frames > 1 ? n_frames - 1 : 1;

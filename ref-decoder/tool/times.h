@@ -39,6 +39,9 @@ int ted4_seconds_parse(const char *text, ted4_seconds *s);
 ted4_time ted4_time_of_seconds(ted4_seconds s, uint32_t n_frames, uint32_t rate_num,
                                uint32_t rate_den);
 
+/* Returns the time that is this part of the whole, from 0 to 1, in steps of 10^-7. */
+ted4_time ted4_time_of_part(double part);
+
 /* R-HDR-005: returns the time of a frame. frame < n_frames, n_frames >= 1. */
 ted4_time ted4_time_of_frame(uint32_t frame, uint32_t n_frames);
 

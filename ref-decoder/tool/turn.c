@@ -7,6 +7,11 @@
 /* Up directions closer than this to (0, 1, 0) have no axis of their own to be turned about. */
 #define OPPOSITE 1e-6
 
+int ted4_has_direction(const float v[3])
+{
+    return v[0] != 0 || v[1] != 0 || v[2] != 0;
+}
+
 void ted4_turn_up(const float up[3], ted4_turn *t)
 {
     const double x = (double)up[0], y = (double)up[1], z = (double)up[2];

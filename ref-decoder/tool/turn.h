@@ -1,9 +1,13 @@
-/* turn.h - the rotation that makes a direction of the scene the up direction of other programs.
+/* turn.h - the direction of a scene that is up, and the rotation that makes it the up direction of
+ * other programs.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_TURN_H
 #define TED4_TURN_H
 
 #include <stddef.h>
+
+/* Returns 1 if v is not 0 0 0, which stands for a direction that nobody has told. */
+int ted4_has_direction(const float v[3]);
 
 /* A rotation of the world, twice: a point x goes to matrix x. */
 typedef struct {

@@ -10,9 +10,9 @@
 #include "camera_path.h"
 #include "cli.h"
 #include "file_cameras.h"
+#include "turn.h"
 
 enum {
-    TIME_DENOMINATOR = 10000000,
     STILL_STEPS = 30, /* pictures from key to key of a scene of one time */
     ORBIT_WIDTH = 1280,
     ORBIT_HEIGHT = 720, /* if the file has no cameras to take the size from */
@@ -75,8 +75,7 @@ static ted4_time path_time(const ted4_session *s, const ted4_camera_list *keys, 
             return playing(i, n);
     a = time_of_key(s, &keys->camera[k]);
     b = time_of_key(s, &keys->camera[next]);
-    return (ted4_time) { (uint32_t)((a + (at - (double)k) * (b - a)) * TIME_DENOMINATOR + 0.5),
-                         TIME_DENOMINATOR };
+    return ted4_time_of_part(a + (at - (double)k) * (b - a));
 }
 
 /* Makes room for n cameras in *l and n views in *view, the caller's. Returns an exit code. */

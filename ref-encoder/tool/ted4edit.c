@@ -15,6 +15,7 @@
 #include "tool/cli.h"
 #include "tool/leftovers.h"
 #include "tool/output.h"
+#include "tool/turn.h"
 
 enum {
     OPT_OUTPUT,
@@ -222,7 +223,7 @@ static void drop_cameras(ted4_edit *e, ted4_cams_kind kind, float up[3])
         const int readable = ted4_cams_read(chunk->view.payload, chunk->view.size, &c) == 0;
 
         chunk->dropped = !readable || c.kind == kind;
-        if (readable && (c.up[0] != 0 || c.up[1] != 0 || c.up[2] != 0))
+        if (readable && ted4_has_direction(c.up))
             memcpy(up, c.up, sizeof c.up);
     }
 }

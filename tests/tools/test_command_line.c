@@ -82,6 +82,11 @@ static void test_times(void **state)
         assert_int_equal(ted4_range_parse(bad_range[i], &r), -1);
     for (size_t i = 0; i < sizeof bad_time / sizeof *bad_time; i++)
         assert_int_equal(ted4_time_parse(bad_time[i], &t), -1);
+    t = ted4_time_of_part(1.0 / 3.0);
+    assert_int_equal(t.num, 3333333);
+    assert_int_equal(t.den, 10000000);
+    t = ted4_time_of_part(1.0);
+    assert_int_equal(t.num, t.den);
     t = ted4_time_of_frame(3, 10);
     assert_int_equal(t.num, 3);
     assert_int_equal(t.den, 9);

@@ -122,7 +122,8 @@ E
 mkdir "$out/ended"
 "$bin/ted4dec" "$out/a.ted4" --render "$out/ended/x.png" --camera "$out/large.json" -q -j 1 &
 while [ -z "$(ls -A "$out/ended")" ] && kill -0 $! 2>/dev/null; do :; done
-{ kill $!; wait $!; } 2>/dev/null
+kill $! 2>/dev/null
+wait $!
 equal ended_render "$(ls -A "$out/ended" | grep -v '^x\.png$')" ""
 
 # ---- a name that is too long ----
