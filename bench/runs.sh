@@ -71,7 +71,7 @@ time_decoder() {
     for i in 1 2 3 4 5; do
         "$programs/ted4dec" "$1" --test --json -j 1 -q >"$out.decode.json" || return 1
         decode_ms=$(echo "$decode_ms $(value decode_ms "$out.decode.json")" |
-            awk '{ print NF < 2 || $2 < $1 ? $NF : $1 }')
+            awk '{ print (NF < 2 || $2 < $1 ? $NF : $1) }')
     done
 }
 

@@ -6,13 +6,27 @@
 # program is given or has to say. Tables of the decoder that a program prints (norm/tables.c) stay
 # as they are printed, and so does text between clang-format off and on.
 export LC_ALL=C
-[ $# -gt 0 ] || set -- $(find . \
-    -type d \( -name .git -o -name 'build*' -o -name corpus -o -name out -o -name __pycache__ \
-        -o -path ./shared -o -path ./conformance/vectors -o -path ./conformance/generated \) \
-    -prune \
-    -o -type f \( -name '*.[ch]' -o -name '*.def' -o -name '*.sh' -o -name '*.awk' -o -name '*.py' \
-        -o -name '*.js' -o -name '*.mjs' -o -name '*.mk' -o -name Makefile -o -name '*.md' \) \
-    ! -path ./ref-decoder/norm/tables.c -print | sed 's|^\./||' | sort)
+# What lies in a checkout besides (.venv, node_modules) is not the project's; files that are not
+# committed yet are.
+files() {
+    if [ "$(git rev-parse --show-prefix 2>/dev/null)" = '' ] &&
+        git ls-files --cached --others --exclude-standard 2>/dev/null | grep -qx Makefile; then
+        git -c core.quotePath=off ls-files --cached --others --exclude-standard
+    else
+        find . -type d \( -name '.?*' ! -path ./.ci -o -name node_modules -o -name 'build*' \
+            -o -name out -o -name __pycache__ \) -prune -o -type f -print | sed 's|^\./||'
+    fi | grep -E '\.([ch]|def|sh|awk|py|js|mjs|mk|md)$|(^|/)Makefile$' |
+        grep -vE '(^|/)corpus/|^shared/|^conformance/(vectors|generated)/' |
+        grep -vx ref-decoder/norm/tables.c | sort -u |
+        while IFS= read -r f; do [ ! -f "$f" ] || printf '%s\n' "$f"; done
+}
+if [ $# -eq 0 ]; then
+    IFS='
+'
+    set -f
+    # shellcheck disable=SC2046 # a line each
+    set -- $(files)
+fi
 awk '
     FNR == 1 {
         block = aside = 0

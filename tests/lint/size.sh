@@ -13,7 +13,7 @@ for f in $(find $folders .ci -type f \( -name '*.[ch]' -o -name '*.sh' -o -name 
             print f ":" line ": function of " n " lines"
             bad = 1
         }
-        f ~ /\.[ch]$/ ? /^{/ : f !~ /\.py$/ && /^[^ #}].*{$/ { start = NR }
+        f ~ /\.[ch]$/ ? /^[{]/ : f !~ /\.py$/ && /^[^ #}].*[{]$/ { start = NR }
         f !~ /\.py$/ && /^}/ { if (start) over(start, NR - start); start = 0 }
         f ~ /\.py$/ && NF {
             match($0, /^ */)
