@@ -38,9 +38,12 @@ n=$(ls "$work/images" | wc -l)
 match=exhaustive_matcher
 [ "$n" -le 80 ] || match=sequential_matcher
 echo "own-video.sh: $n pictures; looking for their poses ($match; $out/log)"
+# Newer versions call the two options of the GPU --FeatureExtraction and --FeatureMatching.use_gpu.
+kind=Sift
+colmap feature_extractor -h 2>&1 | grep -q -e --FeatureExtraction.use_gpu && kind=Feature
 try colmap feature_extractor --database_path "$work/db" --image_path "$work/images" \
-    --ImageReader.single_camera $one --SiftExtraction.use_gpu 0
-try colmap $match --database_path "$work/db" --SiftMatching.use_gpu 0
+    --ImageReader.single_camera $one --${kind}Extraction.use_gpu 0
+try colmap $match --database_path "$work/db" --${kind}Matching.use_gpu 0
 colmap mapper --database_path "$work/db" --image_path "$work/images" --output_path "$work/models" \
     --Mapper.min_model_size 3 </dev/null >>"$out/log" 2>&1
 largest=$(ls -S "$work/models"/*/images.bin 2>/dev/null | head -n 1)

@@ -79,6 +79,21 @@ looks walked "11 train, 1 test" "frames      12"
 mkdir "$out/bin"
 printf '#!/bin/sh\n%s "$@"; echo\n' "$(command -v ffprobe)" >"$out/bin/ffprobe"
 chmod +x "$out/bin/ffprobe"
+# A COLMAP that calls the options of the GPU as newer versions do.
+cat >"$out/bin/colmap" <<END
+#!/bin/sh
+case "\$*" in
+*-h) exec $(command -v colmap) "\$@" 2>&1 | sed 's/Sift\(.*use_gpu\)/Feature\1/' ;;
+*Sift*use_gpu*) echo "unrecognised option" >&2; exit 1 ;;
+esac
+for a; do
+    shift
+    case \$a in --Feature*.use_gpu) a=--Sift\${a#--Feature} ;; esac
+    set -- "\$@" "\$a"
+done
+exec $(command -v colmap) "\$@"
+END
+chmod +x "$out/bin/colmap"
 expect clips_made 0 "5 of 5 pictures have poses" env PATH="$out/bin:$PATH" sh tools/own-video.sh \
     "$out/rig" "$out/clips"/*.mp4
 looks rig "25 train, 5 test" "12.5 frames/s"
