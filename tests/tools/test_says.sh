@@ -1,5 +1,5 @@
 #!/bin/sh
-# test_says.sh - the progress messages of ted4enc and ted4eval: a first message within a second,
+# test_says.sh - the progress messages of ted4enc and ted4eval: a first message long before the end,
 # what was found, videos as they are unpacked, the expected duration, where training resumes; and
 # quiet mode prints nothing. Prints lines as a cmocka program does; run by `make test` from the
 # project's root.
@@ -40,20 +40,26 @@ equal check_wrong "$? $(cat "$out/text")" '3 '
 
 # Names that are not UTF-8, and a message that is cut inside a letter, are JSON all the same.
 odd=$(printf 'no\377'); unknown=$(printf '\357\277\275')
-"$enc" "$out/$odd" --check --json 2>/dev/null >"$out/json"
-check check_json_bytes "$out/json" "{\"error\":\"$out/no$unknown: no such folder"
 "$enc" "$out/scene" --check --json --hold-out "a$(printf '\303\244%.0s' $(seq 120))" 2>/dev/null \
     >"$out/json"
 check check_json_cut "$out/json" "{\"error\":\"" "$(printf 'a\303\244')"
-cp conformance/vectors/worked/WRK-annex-b2.ted4 "$out/$odd.ted4"
-"$TED4_BUILD/ted4dec" "$out/$odd.ted4" -o "$out/$odd.ply" --render "$out/$odd.png" --orbit 1 \
-    --json --time 0 2>/dev/null >"$out/json"
-check dec_json_bytes "$out/json" "\"exports\":[{\"path\":\"$out/no$unknown.ply\"" \
-    "\"views\":[{\"path\":\"$out/no$unknown.png\"" "\"file\":\"$out/no$unknown.ted4\""
-"$TED4_BUILD/ted4info" "$out/$odd.ted4" --validate --json >"$out/json"
-check info_json_bytes "$out/json" "\"file\":\"$out/no$unknown.ted4\""
-"$TED4_BUILD/ted4info" "$out/$odd" --json >"$out/json" 2>/dev/null
-check missing_json_bytes "$out/json" "\"file\":\"$out/no$unknown\""
+odd_files() {
+    "$enc" "$out/$odd" --check --json 2>/dev/null >"$out/json"
+    check check_json_bytes "$out/json" "{\"error\":\"$out/no$unknown: no such folder"
+    "$TED4_BUILD/ted4info" "$out/$odd" --json >"$out/json" 2>/dev/null
+    check missing_json_bytes "$out/json" "\"file\":\"$out/no$unknown\""
+    cp conformance/vectors/worked/WRK-annex-b2.ted4 "$out/$odd.ted4"
+    "$TED4_BUILD/ted4dec" "$out/$odd.ted4" -o "$out/$odd.ply" --render "$out/$odd.png" --orbit 1 \
+        --json --time 0 2>/dev/null >"$out/json"
+    check dec_json_bytes "$out/json" "\"exports\":[{\"path\":\"$out/no$unknown.ply\"" \
+        "\"views\":[{\"path\":\"$out/no$unknown.png\"" "\"file\":\"$out/no$unknown.ted4\""
+    "$TED4_BUILD/ted4info" "$out/$odd.ted4" --validate --json >"$out/json"
+    check info_json_bytes "$out/json" "\"file\":\"$out/no$unknown.ted4\""
+}
+# Some file systems take names in UTF-8 only.
+if (: >"$out/$odd.ted4") 2>/dev/null; then odd_files; else
+    skip odd_files "no file here can be called that"
+fi
 
 # A video whose frames take time: an ffmpeg that makes one picture in a second and a half.
 mkdir "$out/bin" "$out/clips"
@@ -69,21 +75,25 @@ echo '{"frames": 3, "cameras": [{"name": "a", "w": 32, "h": 24,
     "K": [[30, 0, 16], [0, 30, 12], [0, 0, 1]],
     "w2c": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 4], [0, 0, 0, 1]]}]}' >"$out/clips/cams.json"
 
-# Through a pipe: what was printed within a second, and what by the end.
+# Through a pipe: what was printed while the video was unpacked, and what by the end.
 (PATH=$out/bin:$PATH "$enc" "$out/clips" --check >/dev/null 2>"$out/err"; echo $? >"$out/status") &
-sleep 1
+i=0
+while [ $i -lt 600 ] && ! grep -qs loading "$out/err" && [ ! -e "$out/status" ]; do
+    sleep 0.1; i=$((i + 1))
+done
 cp "$out/err" "$out/first"
+if [ -e "$out/status" ]; then fail early "said at the end only"; else ok early; fi
 wait
 check first_word "$out/first" "ted4enc: loading $out/clips"
 equal checked "$(cat "$out/status")" 0
 check unpacking "$out/err" "ted4enc: unpacking a.mp4: "
-if command -v script >/dev/null; then
+if script -qec true /dev/null >/dev/null 2>&1 </dev/null; then
     rm -rf "$out/cache/ted4"
     PATH=$out/bin:$PATH script -qec "'$enc' '$out/clips' --check" "$out/typescript" >/dev/null \
         2>&1 </dev/null
     check terminal "$out/typescript" "ted4enc: loading $out/clips" "unpacking a.mp4: 1 frames"
 else
-    skip terminal "there is no program script"
+    skip terminal "there is no program script, or no terminal for it"
 fi
 
 "$enc" "$out/scene" -o "$out/x.ted4" $small -v --checkpoint "$out/c" 2>"$out/err" ||

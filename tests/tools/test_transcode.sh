@@ -1,9 +1,9 @@
 #!/bin/sh
-# test_transcode.sh - ted4enc --transcode: a file goes from profile Main to Compact and comes back
-# byte for byte, with the same tiers on the way; a grid whose order is not that of profile Main is
-# sorted, with a warning; chunks that may be untrue are dropped; what is wrong is said, and options
-# of a training are refused. Prints lines as a cmocka program does; run by `make test` from the
-# project's root.
+# test_transcode.sh - ted4enc --transcode: a file goes from profile Main to Compact and comes back,
+# with the same tiers on the way and at the end, and a second time byte for byte; a grid whose order
+# is not that of profile Main is sorted, with a warning; chunks that may be untrue are dropped; what
+# is wrong is said, and options of a training are refused. Prints lines as a cmocka program does;
+# run by `make test` from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 . tests/support/speak.sh
@@ -22,7 +22,12 @@ for f in "$vectors"/content/CNT-pop-0.002.ted4 "$vectors"/content/CNT-still-0.00
     name=$(basename "$f" .ted4)
     there "$f" && tiers "$f" >"$out/before" && tiers "$out/c.ted4" >"$out/after" &&
         cmp -s "$out/before" "$out/after" && ok "same_$name" || fail "same_$name" "other tiers"
-    back && cmp -s "$f" "$out/m.ted4" && ok "back_$name" || fail "back_$name" "other bytes"
+    # Bytes that zlib deflates anew are those of this machine's zlib from the first time on.
+    back && tiers "$out/m.ted4" >"$out/after" && cmp -s "$out/before" "$out/after" &&
+        ok "back_$name" || fail "back_$name" "other tiers"
+    mv "$out/m.ted4" "$out/first.ted4"
+    there "$out/first.ted4" && back && cmp -s "$out/first.ted4" "$out/m.ted4" &&
+        ok "again_$name" || fail "again_$name" "other bytes"
 done
 there "$vectors/content/CNT-pop-0.002.ted4"
 [ "$(wc -c <"$out/c.ted4")" -lt "$(wc -c <"$vectors/content/CNT-pop-0.002.ted4")" ] &&
