@@ -39,17 +39,27 @@ version() { od -An -tu1 -j8 -N2 "$out/$1.ted4" | tr -d ' \n'; } # major, minor (
 [ "$(version main) $(version compact)" = '10 12' ] && ok version ||
     fail version "$(version main) $(version compact)"
 
-# Stopped in the middle of stage 2, after trials of weights, and resumed.
-train whole --profile compact --capacity fixed --set stage2=2400 --set capacity_share=0.25 \
-    --set stage1=20
-"$TED4_BUILD/ted4enc" "$out/pop" -o "$out/half.ted4" $small --profile compact --capacity fixed \
-    --set stage2=2400 --set capacity_share=0.25 --set stage1=20 \
-    --checkpoint "$out/half.checkpoint" --checkpoint-every 0 >"$out/half.said" 2>&1 & pid=$!
-i=0
-while [ $i -lt 600 ] && [ ! -s "$out/half.checkpoint" ]; do sleep 0.1; i=$((i + 1)); done
-sleep 1
-kill -TERM $pid 2>/dev/null; wait $pid
-train half --profile compact --capacity fixed --set stage2=2400 --set capacity_share=0.25 \
-    --set stage1=20 --checkpoint "$out/half.checkpoint" --resume
+# Stopped in the integer stage, after trials of weights, and resumed. A program that ended before it
+# was stopped begins again.
+long='--profile compact --capacity fixed --set stage1=20 --set stage2=2400 --set capacity_share=0.25'
+stop() {
+    rm -f "$out/half".*
+    "$TED4_BUILD/ted4enc" "$out/pop" -o "$out/half.ted4" $small $long --log "$out/half.log" \
+        --checkpoint "$out/half.checkpoint" --checkpoint-every 0 >"$out/half.said" 2>&1 & pid=$!
+    i=0
+    while [ $i -lt 6000 ] && [ ! -e "$out/half.ted4" ] &&
+        ! grep -qs '"stage":"2i"' "$out/half.log"; do sleep 0.05; i=$((i + 1)); done
+    kill -TERM $pid 2>/dev/null
+    wait $pid
+    status=$?
+}
+train whole $long
+for try in 1 2 3 4 5; do
+    stop
+    [ $status -eq 0 ] || break
+done
+[ $status -eq 143 ] && ok stopped || fail stopped "status $status: $(cat "$out/half.said")"
+train half $long --checkpoint "$out/half.checkpoint" --resume
+check goes_on "$out/half.said" 'going on from step '
 same resumed whole half
 exit $bad
