@@ -18,9 +18,10 @@ $W/inc/spec/inflate.h: spec/annex-l-deflate.md tests/spec/code.awk
 	@mkdir -p $(@D)
 	awk -f tests/spec/code.awk $< > $@.new && mv $@.new $@
 $W/player/wasm/inflate.o: $W/inc/spec/inflate.h
-$W/%.o: %.c
+$W/player/wasm/xxhash.o: SMALL = -Os
+$W/%.o: %.c player/player.mk
 	@mkdir -p $(@D)
-	$(WASM_CC) $(WASM_INC) -DXXH_INLINE_ALL -MD -MP -c $< -o $@
+	$(WASM_CC) $(SMALL) $(WASM_INC) -MD -MP -c $< -o $@
 $W/ted4.wasm: $(WASM_OBJ)
 	wasm-ld-19 --no-entry --gc-sections --strip-all -z stack-size=1048576 -O2 $^ -o $@
 	@printf '%s: %s bytes, %s by gzip -9\n' $@ $$(wc -c <$@) $$(gzip -9c $@ | wc -c)

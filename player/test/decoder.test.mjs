@@ -21,6 +21,10 @@ function* inFolder(name) {
 
 const contents = [...inFolder("content/")];
 
+test("the module is small", () => {
+  assert.ok(wasm.length <= 150e3, `${wasm.length} bytes`);
+});
+
 test("trained files have the hashes of their descriptors in T1 to T4", () => {
   assert.ok(contents.length > 0);
   for (const { bytes, wanted } of contents) {
