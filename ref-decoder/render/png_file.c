@@ -1,4 +1,4 @@
-/* png_file.c - writes PNG files with libpng, each under a temporary name at first.
+/* png_file.c - see png_file.h. The simplified interface of libpng does not need setjmp.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "render/png_file.h"
 
@@ -38,15 +38,16 @@ uint8_t *ted4_png_encode(int width, int height, const uint8_t *rgb, size_t *size
     return NULL;
 }
 
-/* Writes to an open file with libpng's simplified interface, which does not need setjmp. Returns 0,
- * or -1 with a message in why. */
-static int write_png(FILE *f, int width, int height, const uint8_t *rgb, char *why, size_t why_size)
+int ted4_png_put(FILE *f, int width, int height, const uint8_t *rgb, char *why, size_t why_size)
 {
     png_image p = describe(width, height);
 
     if (png_image_write_to_stdio(&p, f, 0, rgb, 0, NULL))
         return 0;
-    snprintf(why, why_size, "PNG: %s", p.message);
+    if (ferror(f))
+        snprintf(why, why_size, "%s", strerror(errno));
+    else
+        snprintf(why, why_size, "PNG: %s", p.message);
     return -1;
 }
 
@@ -66,7 +67,7 @@ int ted4_png_write(const char *path, int width, int height, const uint8_t *rgb, 
     if (f == NULL) {
         snprintf(why, why_size, "%s", strerror(errno));
     } else {
-        result = write_png(f, width, height, rgb, why, why_size);
+        result = ted4_png_put(f, width, height, rgb, why, why_size);
         if (fclose(f) != 0 && result == 0) {
             snprintf(why, why_size, "%s", strerror(errno));
             result = -1;

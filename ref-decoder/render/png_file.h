@@ -7,10 +7,15 @@
 
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 
-/* Writes rgb, [height][width][3] sRGB bytes, to a temporary file beside path, which is then renamed
- * to path, so that path never holds an incomplete image. Returns 0, or -1 with a reason in why,
- * which does not name the file (truncated to why_size bytes). */
+/* Writes rgb, [height][width][3] sRGB bytes, to an open file, which stays open. Returns 0, or -1
+ * with a reason in why (truncated to why_size bytes). */
+int ted4_png_put(FILE *f, int width, int height, const uint8_t *rgb, char *why, size_t why_size);
+
+/* Writes the same pixels to a temporary file beside path, which is then renamed to path, so that
+ * path never holds an incomplete image. Returns 0, or -1 with a reason in why, which does not name
+ * the file. */
 int ted4_png_write(const char *path, int width, int height, const uint8_t *rgb, char *why,
                    size_t why_size);
 

@@ -18,6 +18,7 @@
 #include "stop.h"
 #include "ted4.h"
 #include "tool/cli.h"
+#include "tool/clock.h"
 #include "train/model/header_from_options.h"
 #include "train/step/trainer_init.h"
 #include "training.h"
@@ -114,7 +115,7 @@ static int run(const encoder *e, ted4_trainer *t)
 {
     const ted4_request *r = e->request;
     ted4_teller *teller = e->teller;
-    const double start = ted4_seconds();
+    const double start = ted4_clock();
     ted4_training training;
     ted4_coded coded = { 0 };
     int bad = ted4_training_begin(&training, r, t, teller) != 0;
@@ -131,7 +132,7 @@ static int run(const encoder *e, ted4_trainer *t)
     bad = ted4_training_end(&training, bad) != 0;
     if (!bad) {
         say_exchange(e);
-        report(r, t, teller, &coded, (times) { start - e->begin, before + ted4_seconds() - start });
+        report(r, t, teller, &coded, (times) { start - e->begin, before + ted4_clock() - start });
     }
 
     const int over = r->target_size > 0 && coded.size > r->target_size;
@@ -408,7 +409,7 @@ int ted4_encoder_main(int argc, char **argv, ted4_exchange *x)
     ted4_request r;
     ted4_parallel p;
     ted4_teller teller;
-    const double begin = ted4_seconds();
+    const double begin = ted4_clock();
     const int parsed = parse(&r, argc, argv, x);
 
     if (parsed != TED4_REQUEST_GO)

@@ -9,9 +9,9 @@
 #include <sys/stat.h>
 
 #include "moving_pixels.h"
-#include "tool/picture_out.h"
 #include "sheet.h"
 #include "tool/output.h"
+#include "tool/picture_out.h"
 
 enum { TRUTH, OURS, ERROR, MOVING, N_KINDS };
 static const char *const kinds[N_KINDS] = {

@@ -5,6 +5,7 @@
 #include <math.h>
 
 #include "stop.h"
+#include "tool/clock.h"
 #include "train/search/file_cost.h"
 #include "train/search/model_search.h"
 #include "train/search/prior_bits.h"
@@ -100,7 +101,7 @@ int ted4_training_look(void *training)
     const ted4_trainer *tr = t->trainer;
     const ted4_onlooker *o = &tr->onlooker;
     ted4_facts *f = &t->facts;
-    const double clock = ted4_seconds();
+    const double clock = ted4_clock();
     const ted4_work w = work_of(t);
 
     ted4_estimate_see(&t->estimate, &w, clock);
@@ -131,5 +132,5 @@ int ted4_training_asked(ted4_training *t)
 
 void ted4_training_rewound(ted4_training *t)
 {
-    ted4_estimate_rewind(&t->estimate, ted4_seconds());
+    ted4_estimate_rewind(&t->estimate, ted4_clock());
 }

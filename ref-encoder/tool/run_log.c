@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "json_line.h"
+#include "tool/clock.h"
 #include "train/search/candidates.h"
 #include "train/state/anchor_masks.h"
 #include "train/monitor/monitor.h"
@@ -126,7 +127,7 @@ int ted4_run_log_cut(ted4_run_log *l, const ted4_trainer *t, char *why, size_t w
 
 void ted4_run_log_skip(ted4_run_log *l)
 {
-    l->wall = ted4_seconds();
+    l->wall = ted4_clock();
     l->cpu = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
 }
 

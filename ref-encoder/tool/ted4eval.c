@@ -17,14 +17,15 @@
 #include "eval_result.h"
 #include "fit_colours.h"
 #include "moving_pixels.h"
-#include "tool/picture_out.h"
 #include "render/view.h"
 #include "sheet.h"
 #include "ted4.h"
 #include "tool/arguments.h"
 #include "tool/cli.h"
+#include "tool/clock.h"
 #include "tool/leftovers.h"
 #include "tool/output.h"
+#include "tool/picture_out.h"
 #include "teller.h"
 #include "tool/threads.h"
 
@@ -223,7 +224,7 @@ static int open_file(session *s)
     ted4_error e = { TED4_OK, 0 };
     ted4_scene *scene;
     uint8_t *const bytes = ted4_read_file(s->set->input, &s->sum.bytes);
-    const double start = ted4_seconds();
+    const double start = ted4_clock();
 
     if (bytes == NULL) {
         ted4_teller_clear(&teller);
@@ -234,7 +235,7 @@ static int open_file(session *s)
         e.code = ted4_recon_new(&s->recon, scene, &options);
         ted4_scene_free(scene);
     }
-    s->sum.decode_ms = 1e3 * (ted4_seconds() - start);
+    s->sum.decode_ms = 1e3 * (ted4_clock() - start);
     free(bytes);
     ted4_teller_clear(&teller);
     return e.code == TED4_OK ? TED4_EXIT_FINE
@@ -452,9 +453,9 @@ static int evaluate_picture(session *s, size_t i)
 
     if (ours == NULL)
         return failed(p->path, "out of memory");
-    start = ted4_seconds();
+    start = ted4_clock();
     code = draw_picture(s, i, ours);
-    s->sum.render_s += ted4_seconds() - start;
+    s->sum.render_s += ted4_clock() - start;
     if (code == TED4_EXIT_FINE) {
         if ((truth = ted4_dataset_pixels(&s->data, i, &m)) == NULL) {
             code = failed(p->path, m.text);

@@ -9,6 +9,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "tool/clock.h"
 #include "tool/thread_start.h"
 
 /* All in seconds: how often the thread wakes up, and the time between status lines, elsewhere
@@ -19,14 +20,6 @@
 #define PAUSE_SCREEN 1.0
 
 enum { MOST_TEXT = 600 };
-
-double ted4_seconds(void)
-{
-    struct timespec t;
-
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 void ted4_teller_time(double seconds, char *text, size_t size)
 {
@@ -120,7 +113,7 @@ static void *tell(void *arg)
         until.tv_nsec %= 1000000000L;
         pthread_cond_timedwait(&t->wake, &t->lock, &until);
 
-        const double clock = ted4_seconds();
+        const double clock = ted4_clock();
 
         if (!t->ending && t->now.kind != TED4_TELL_NOTHING && clock - t->last >= pause_of(t))
             show(t, clock);
@@ -137,7 +130,7 @@ void ted4_teller_begin(ted4_teller *t, const char *program, int quiet)
     t->terminal = isatty(STDERR_FILENO);
     t->pause[0] = t->terminal ? PAUSE_SCREEN : PAUSE_BEFORE;
     t->pause[1] = t->terminal ? PAUSE_SCREEN : PAUSE;
-    t->last = t->since = ted4_seconds();
+    t->last = t->since = ted4_clock();
     pthread_mutex_init(&t->lock, NULL);
     pthread_cond_init(&t->wake, NULL);
     /* If there is no thread, only the messages are printed. */
@@ -182,7 +175,7 @@ static void say(ted4_teller *t, const char *format, va_list arguments)
     vfprintf(stderr, format, arguments);
     fputc('\n', stderr);
     fflush(stderr);
-    t->last = ted4_seconds();
+    t->last = ted4_clock();
     pthread_mutex_unlock(&t->lock);
 }
 
@@ -211,7 +204,7 @@ void ted4_teller_now(ted4_teller *t, const ted4_facts *f)
         return;
     pthread_mutex_lock(&t->lock);
     if (f->kind != t->now.kind || strcmp(f->name, t->now.name) != 0)
-        t->since = ted4_seconds();
+        t->since = ted4_clock();
     t->now = *f;
     pthread_mutex_unlock(&t->lock);
 }
@@ -221,6 +214,6 @@ void ted4_teller_show(ted4_teller *t)
     if (t->quiet)
         return;
     pthread_mutex_lock(&t->lock);
-    show(t, ted4_seconds());
+    show(t, ted4_clock());
     pthread_mutex_unlock(&t->lock);
 }

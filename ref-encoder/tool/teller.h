@@ -48,9 +48,6 @@ typedef struct {
     int open;     /* 1: the terminal shows a status line that has not been ended */
 } ted4_teller;
 
-/* Returns the seconds of the monotonic clock. */
-double ted4_seconds(void);
-
 /* Starts the thread of the status line. program: borrowed. quiet: only errors will be printed. */
 void ted4_teller_begin(ted4_teller *t, const char *program, int quiet);
 /* Clears the status line and ends the thread. */

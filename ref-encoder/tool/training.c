@@ -10,6 +10,7 @@
 
 #include "describe_trained.h"
 #include "stop.h"
+#include "tool/clock.h"
 #include "tool/json_string.h"
 #include "tool/output.h"
 #include "train/monitor/checkpoint.h"
@@ -299,7 +300,7 @@ static int is_done(const ted4_trainer *t, int stages)
 int ted4_training_go(ted4_training *t, int stages)
 {
     ted4_trainer *tr = t->trainer;
-    double saved = ted4_seconds();
+    double saved = ted4_clock();
 
     ted4_run_log_skip(&t->log);
     while (!is_done(tr, stages)) {
@@ -314,10 +315,10 @@ int ted4_training_go(ted4_training *t, int stages)
         if ((tr->iteration / REPORT_EVERY > before / REPORT_EVERY || is_done(tr, stages)) &&
             log_step(t) != 0)
             return -1;
-        if (ted4_seconds() - saved >= t->request->checkpoint_every && ted4_monitor_calm(tr)) {
+        if (ted4_clock() - saved >= t->request->checkpoint_every && ted4_monitor_calm(tr)) {
             if (save(t) != 0)
                 return -1;
-            saved = ted4_seconds();
+            saved = ted4_clock();
         }
     }
     ted4_run_log_tick(&t->log, tr);
