@@ -34,7 +34,7 @@ page bd_rate bd_rate.md
 # that is not the sources.
 # Those of machines.csv have one hash of both.
 for csv in sweep capacity stability zoo bd_rate machines; do
-    if [ $csv = machines ]; then key='[0-9a-f]+'; else key='[0-9a-f]+-[0-9a-f]+(\.[0-9a-f]+)?'; fi
+    if [ $csv = machines ]; then key='[0-9a-f]+'; else key='[0-9a-f]+-[0-9a-f]+([.][0-9a-f]+)?'; fi
     bad_rows=$(awk -F, -v key="^$key\$" '
         NR == 1 { for (i = 1; i <= NF; i++) if ($i == "key") c = i; if (!c) print "no key"; next }
         $c !~ key { print $1 }
