@@ -173,7 +173,7 @@ static const ted4_command COMMAND = {
     "  fast     most of the quality, for trying options; 1.5 minutes\n"
     "  medium   a file to keep; 5 minutes\n"
     "  slow     more anchors and longer stages; 10 minutes\n"
-    "  paper    as many steps and anchors as the paper; 30 minutes\n\n"
+    "  paper    as many steps and anchors as the paper; 25 minutes\n\n"
     "Training options (--set) and their values in each preset:\n",
     print_training_options,
 };
