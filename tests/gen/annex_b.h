@@ -33,9 +33,9 @@ static inline void annex_b_hex(FILE *out, const uint8_t *p, size_t n)
 /* What the value of a substream counts: entries of what it codes. */
 static inline const char *annex_b_unit(const char *name)
 {
-    return strcmp(name, "tree_substream") == 0      ? "anchors"
-           : strcmp(name, "weights_substream") == 0 ? "values"
-                                                    : "symbols";
+    return strcmp(name, "tree_substream") == 0      ? "anchor"
+           : strcmp(name, "weights_substream") == 0 ? "value"
+                                                    : "symbol";
 }
 
 /* What a value means, for people. */
@@ -53,7 +53,8 @@ static inline void annex_b_note(const annex_b_dissection *d, char note[ANNEX_B_N
     if (strcmp(d->name, "chunk_type") == 0)
         snprintf(note, ANNEX_B_NOTE, "%.4s", (const char *)d->data + d->at);
     if (strstr(d->name, "_substream") != NULL)
-        snprintf(note, ANNEX_B_NOTE, "%d %s", (int)d->value, annex_b_unit(d->name));
+        snprintf(note, ANNEX_B_NOTE, "%d %s%s", (int)d->value, annex_b_unit(d->name),
+                 d->value == 1 ? "" : "s");
     if (strcmp(d->name, "magic") == 0 || strcmp(d->name, "ends_hash") == 0)
         snprintf(note, ANNEX_B_NOTE, "all of them");
     if (d->index < 0)
@@ -229,7 +230,7 @@ static inline const uint8_t *annex_b_attributes(const annex_b_tile *b, const cha
                               ", sigma index %d, k = %" PRId32,
                               k, a, mu[0], g, x);
             if (annex_b_escape(mu[0], g, x) >= 0)
-                snprintf(what + n_text, sizeof what - (size_t)n_text, ", escape with e = %" PRId32,
+                snprintf(what + n_text, sizeof what - (size_t)n_text, ", escape with x = %" PRId32,
                          annex_b_escape(mu[0], g, x));
             annex_b_step(b->out, &before, &c, 0, what);
         }

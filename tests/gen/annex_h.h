@@ -143,7 +143,7 @@ static inline void annex_h_networks(FILE *out)
     annex_h_largest(&h, &s);
     const unsigned hyper = s.hyper.n_layers, heads = s.netr[TED4_NET_COLOUR].n_layers;
 
-    fprintf(out, "| values of a blob | 1 | 2^64 - 1 counted; level | 13.1 |\n");
+    fprintf(out, "| values of a blob | 1 | (2^32 - 1) 512 (bank); level | 7.2, 13.1 |\n");
     fprintf(out,
             "| layers of a network | 1 | %u (F_deform), %u (heads), %u (hyperprior), %u (slices), "
             "1 (F_project) | 6.1 |\n",
