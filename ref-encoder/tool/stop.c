@@ -22,23 +22,21 @@ static void say(const char *word)
         silent = 1;
 }
 
-/* After a first signal the others have their default actions again. But SIGHUP is ignored while the
- * last step is made: that a terminal was closed is told by the system and by a shell, and is one
- * request. */
-static void let_go(void)
+/* Gives a signal, if it is handled here, another action. */
+static void change(int signal, void (*to)(int))
 {
     struct sigaction later, now;
 
     memset(&later, 0, sizeof later);
-    for (int i = 0; i < N_SIGNALS; i++) {
-        later.sa_handler = keeping && signals[i] == SIGHUP ? SIG_IGN : SIG_DFL;
-        if (sigaction(signals[i], NULL, &now) == 0 && now.sa_handler == take)
-            sigaction(signals[i], &later, NULL);
-    }
+    later.sa_handler = to;
+    if (sigaction(signal, NULL, &now) == 0 && now.sa_handler == take)
+        sigaction(signal, &later, NULL);
 }
 
-/* The signal handler. Unless it only records the signal, it raises it again with the default
- * action, which takes effect when the handler returns. */
+/* The signal handler. It records the first signal during training. Any other one ends the program:
+ * unfinished files are removed, and the signal is raised again with the default action, which takes
+ * effect when the handler returns. But SIGHUP is ignored while the last step is made: that a
+ * terminal was closed is told by the system and by a shell, and is one request. */
 static void take(int signal)
 {
     const int before = errno, first = asked == 0;
@@ -46,7 +44,10 @@ static void take(int signal)
 
     if (first)
         asked = signal;
-    let_go();
+    if (!at_once)
+        change(SIGHUP, SIG_IGN);
+    for (int i = 0; i < N_SIGNALS && at_once; i++)
+        change(signals[i], SIG_DFL);
     if (first)
         say(keeping ? "\nted4enc: stopping after this step; once more ends at once\n"
                     : "\nted4enc: stopped before training; nothing was written\n");

@@ -4,6 +4,8 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "test.h"
 #include "mishap.h"
+#include "tool/stop.h"
+#include "tool/leftovers.h"
 
 /* A probe at step 300, stage 2 from 1200 on, trials at 1305, the integer stage at 1760. */
 static const char *const options[] = { "ted4enc",
@@ -243,8 +245,8 @@ static void test_no_checkpoint(void **state)
     expect_files("l");
 }
 
-/* The second signal meets the default action; a signal that was ignored at the start stays ignored,
- * also after another one. */
+/* The second signal ends the program by its default action; a signal that was ignored at the start
+ * stays ignored, also after another one. */
 static void test_again(void **state)
 {
     const moment m = { "\"step\":250,", 0 };
@@ -280,6 +282,39 @@ static void test_again(void **state)
     assert_int_equal(finish(child), 128 + SIGTERM);
 }
 
+/* A second signal ends the program at once, and leaves no file that is not complete, as a
+ * checkpoint that is being written. */
+static void test_again_in_a_write(void **state)
+{
+    static const int signals[] = { SIGINT, SIGTERM };
+
+    (void)state;
+    begin_test();
+    for (size_t i = 0; i < 2; i++) {
+        const char *const path = tiny_path(&folder, "out/c.part");
+        FILE *const f = fopen(path, "w");
+
+        assert_non_null(f);
+        fclose(f);
+        fflush(NULL);
+
+        const pid_t child = fork();
+
+        assert_true(child >= 0);
+        if (child == 0) {
+            ted4_stop_on_signals(1);
+            ted4_stop_keep();
+            ted4_leftovers_add(path, 0);
+            raise(SIGINT);
+            if (ted4_stop_asked() == SIGINT)
+                raise(signals[i]);
+            _exit(100);
+        }
+        assert_int_equal(finish(child), 1000 + signals[i]);
+        expect_files("");
+    }
+}
+
 /* Both the system and a shell tell a program that its terminal was closed: that is one request. */
 static void test_hung_up_twice(void **state)
 {
@@ -300,11 +335,11 @@ static void test_hung_up_twice(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(test_loading),
-                                        cmocka_unit_test(test_moments),
-                                        cmocka_unit_test(test_no_checkpoint),
-                                        cmocka_unit_test(test_again),
-                                        cmocka_unit_test(test_hung_up_twice) };
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_loading),          cmocka_unit_test(test_moments),
+        cmocka_unit_test(test_no_checkpoint),    cmocka_unit_test(test_again),
+        cmocka_unit_test(test_again_in_a_write), cmocka_unit_test(test_hung_up_twice)
+    };
 
     /* A shell that runs commands in the background, or nohup, makes them ignore signals. */
     signal(SIGINT, SIG_DFL);
