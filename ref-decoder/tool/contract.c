@@ -140,7 +140,12 @@ static FILE *open_dump(request *r, int tier, int number)
 
 static void close_dump(request *r, FILE *f)
 {
-    if (f != NULL && (ferror(f) | (fclose(f) != 0)) != 0)
+    if (f == NULL)
+        return;
+
+    const int bad = ferror(f); /* asked first: fclose takes the stream away */
+
+    if (fclose(f) != 0 || bad)
         fail(r, r->dump, strerror(errno));
 }
 
@@ -234,7 +239,8 @@ static json_t *tier_r(request *r, const ted4_scene *s, const ted4_options *o, te
         ted4_query q;
 
         if (ted4_contract_query(json_array_get(queries, i), &q) == 0) {
-            json_array_append_new(answer, records(r, recon, &q, (int)i));
+            if (json_array_append_new(answer, records(r, recon, &q, (int)i)) != 0)
+                fail(r, r->input, NO_MEMORY);
             continue;
         }
         snprintf(text, sizeof text, "query %zu: %s", i, TED4_CONTRACT_QUERY);
@@ -266,9 +272,10 @@ static json_t *tiers(request *r, int first, const void *data, size_t size, const
         if (r->tier[i]) {
             const char name[3] = { 'T', (char)('0' + i), '\0' };
 
-            json_object_set_new(t, name,
-                                i == T5 ? tier_r(r, s, o, verdict)
-                                        : tier_e(r, data, size, s, o, i, verdict));
+            if (json_object_set_new(t, name,
+                                    i == T5 ? tier_r(r, s, o, verdict)
+                                            : tier_e(r, data, size, s, o, i, verdict)) != 0)
+                fail(r, r->input, NO_MEMORY);
         }
     return t;
 }

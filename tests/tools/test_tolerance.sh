@@ -63,6 +63,13 @@ run odd_query "ted4dec: $out/odd.json: query 0: expected {\"t\":[num,den],\"cam\
     "$out/odd.json" "$out/out"
 run no_list "ted4dec: $out/none.json: expected a list of queries" "$out/none.json" "$out/out"
 run no_dump "ted4dec: $out/a.ted4/x: Not a directory" "$out/q.json" "$out/a.ted4/x"
+if [ -c /dev/full ]; then
+    mkdir "$out/full"
+    ln -s /dev/full "$out/full/T5-3.bin"
+    run full_dump "ted4dec: $out/full: No space left on device" "$out/q.json" "$out/full"
+else
+    skip full_dump "there is no /dev/full"
+fi
 judge_of() { expect "$1" "$2" "$3" "$TED4_BUILD/ted4tolerance" judge "$4" "$5" "$out/out"; }
 judge_of judge_absent 3 "ted4tolerance: $out/absent.json: No such file or directory" \
     "$out/a.ted4" "$out/absent.json"
