@@ -14,6 +14,10 @@
 
 #include "leftovers.h"
 
+/* Temporary names that are tried. A process that was killed leaves one with its number, and so may
+ * one of another machine or container that writes to the same folder. */
+enum { MOST_NAMES = 100 };
+
 /* n: what snprintf gave for a buffer of TED4_PATH_SIZE. Returns 0, or -1 with errno set if it is
  * too small. */
 static int fits(int n)
@@ -24,10 +28,13 @@ static int fits(int n)
     return -1;
 }
 
-/* Makes the temporary name for path. Returns 0, or -1 with errno set if it is too long. */
-static int name_temporary(char out[TED4_PATH_SIZE], const char *path)
+/* Makes a temporary name for path: the first one, or another if number is above 0. Returns 0, or -1
+ * with errno set if it is too long. */
+static int name_temporary(char out[TED4_PATH_SIZE], const char *path, int number)
 {
-    return fits(snprintf(out, TED4_PATH_SIZE, "%s.%ld.part", path, (long)getpid()));
+    return fits(number == 0 ? snprintf(out, TED4_PATH_SIZE, "%s.%ld.part", path, (long)getpid())
+                            : snprintf(out, TED4_PATH_SIZE, "%s.%ld-%d.part", path, (long)getpid(),
+                                       number));
 }
 
 /* Finds the place of a file: where links at path lead if there is something, otherwise path.
@@ -41,31 +48,49 @@ static int find_place(char place[TED4_PATH_SIZE], const char *path)
     return fits(n);
 }
 
-/* Creates a file that will replace the one at place, with the same mode. Returns NULL with errno
- * set if it cannot be created. */
-static FILE *create(const char *temporary, const char *place)
+/* Creates a file that will replace the one at place, with the same mode, if replaces is set. What
+ * has its name is another's, or a link to what is, and stays. Returns NULL with errno set if it
+ * cannot be created. */
+static FILE *create(const char *temporary, int replaces, mode_t mode)
 {
-    struct stat there;
-    const int replaces = stat(place, &there) == 0 && S_ISREG(there.st_mode);
-    const int fd = open(temporary, O_WRONLY | O_CREAT | O_TRUNC, replaces ? 0600 : 0666);
+    const int fd = open(temporary, O_WRONLY | O_CREAT | O_EXCL, replaces ? 0600 : 0666);
     FILE *const f = fd < 0 ? NULL : fdopen(fd, "wb");
 
-    if (f != NULL && replaces)
-        (void)fchmod(fd, there.st_mode & 0777); /* a file system may have no modes */
-    else if (f == NULL && fd >= 0)
+    if (f != NULL && replaces) {
+        (void)fchmod(fd, mode & 0777); /* a file system may have no modes */
+    } else if (f == NULL && fd >= 0) {
+        const int why = errno;
+
         close(fd);
+        unlink(temporary);
+        errno = why;
+    }
     return f;
 }
 
 int ted4_output_open(ted4_output *o, const char *path)
 {
-    if (find_place(o->path, path) != 0 || name_temporary(o->temporary, o->path) != 0)
+    struct stat there;
+
+    if (find_place(o->path, path) != 0)
         return -1;
-    ted4_leftovers_add(o->temporary, 0);
-    o->file = create(o->temporary, o->path);
-    if (o->file != NULL)
-        return 0;
-    ted4_leftovers_forget(o->temporary);
+
+    const int replaces = stat(o->path, &there) == 0;
+
+    if (replaces && !S_ISREG(there.st_mode)) {
+        errno = S_ISDIR(there.st_mode) ? EISDIR : EOPNOTSUPP;
+        return -1;
+    }
+    errno = EEXIST;
+    for (int i = 0; i < MOST_NAMES && errno == EEXIST; i++) {
+        if (name_temporary(o->temporary, o->path, i) != 0)
+            return -1;
+        ted4_leftovers_add(o->temporary, 0);
+        o->file = create(o->temporary, replaces, replaces ? there.st_mode : 0);
+        if (o->file != NULL)
+            return 0;
+        ted4_leftovers_forget(o->temporary);
+    }
     return -1;
 }
 

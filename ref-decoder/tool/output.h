@@ -19,7 +19,8 @@ typedef struct {
 int ted4_output_exists(const char *path);
 
 /* Opens a temporary file next to path; where path is a link to a file, next to that file. It has
- * the mode of the file that it will replace. Returns 0, or -1 with errno set. */
+ * the mode of the file that it will replace. Returns 0, or -1 with errno set: EISDIR or EOPNOTSUPP
+ * where path is a folder, or a device or a pipe, which a file would replace. */
 int ted4_output_open(ted4_output *o, const char *path);
 /* Flushes and closes the temporary file and gives it its name, replacing an existing file but not
  * a link to it. Returns 0, or -1 with errno set and the temporary file removed. */

@@ -21,8 +21,10 @@ int ted4_file_writable(const char *path, int force, const char *instead, char *w
         snprintf(why, why_size, "the output's name is empty");
         return -1;
     }
-    if (stat(path, &there) == 0 && S_ISDIR(there.st_mode)) {
-        snprintf(why, why_size, "%s: is a folder, expected a file name", path);
+    if (stat(path, &there) == 0 && !S_ISREG(there.st_mode)) {
+        snprintf(why, why_size, "%s: is %s", path,
+                 S_ISDIR(there.st_mode) ? "a folder, expected a file name"
+                                        : "no file, but a device or a pipe");
         return -1;
     }
     if (!force && ted4_output_exists(path)) {

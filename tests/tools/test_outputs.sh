@@ -107,6 +107,18 @@ ln -s elsewhere/x.png "$out/at/x.png"
 expect dangling_sheet 3 "x.png: exists; -f overwrites" "$bin/ted4eval" "$out/a.ted4" "$scene" \
     --sheet "$out/at/x.png"
 
+# A pipe, as a device, is no file to be replaced.
+mkfifo "$out/at/pipe.ted4" "$out/at/pipe.png"
+expect pipe_checkpoint 3 "pipe.ted4: is no file, but a device or a pipe" "$bin/ted4enc" "$scene" \
+    -o "$out/at/p.ted4" $small -f --checkpoint "$out/at/pipe.ted4"
+expect pipe_edit 3 "pipe.ted4: is no file, but a device or a pipe" "$bin/ted4edit" \
+    "$out/a.ted4" -o "$out/at/pipe.ted4" --title x -f
+expect pipe_render 3 "pipe.png: Operation not supported" "$bin/ted4dec" "$out/a.ted4" --render \
+    "$out/at/pipe.png" --orbit 1 -f -q
+[ -p "$out/at/pipe.ted4" ] && [ -p "$out/at/pipe.png" ] && ok pipes_stay ||
+    fail pipes_stay "$(ls -l "$out/at")"
+rm -f "$out/at"/pipe.*
+
 # Nothing is drawn before it is known that all pictures can be written.
 mkdir -p "$out/images/error"
 : >"$out/images/error/00001.png"

@@ -1,0 +1,80 @@
+/* test_output.c - tool/output.h: what is in the way of an output, or of its temporary file, stays.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <errno.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include "test.h"
+#include "temporary.h"
+#include "tool/output.h"
+
+static char folder[TEMPORARY_SIZE];
+
+/* What has the temporary name of an output is another's, be it a link that somebody laid there: it
+ * stays as it is. */
+static void test_name_taken(void **state)
+{
+    char path[256], other[256], taken[300], text[16] = "";
+    ted4_output o;
+    FILE *f;
+
+    (void)state;
+    snprintf(path, sizeof path, "%s/x.ply", folder);
+    snprintf(other, sizeof other, "%s/other", folder);
+    snprintf(taken, sizeof taken, "%s.%ld.part", path, (long)getpid());
+    f = fopen(other, "w");
+    assert_non_null(f);
+    assert_true(fputs("theirs", f) > 0);
+    assert_int_equal(fclose(f), 0);
+    assert_int_equal(symlink("other", taken), 0);
+    assert_int_equal(ted4_output_open(&o, path), 0);
+    assert_true(fputs("ours", o.file) > 0);
+    assert_int_equal(ted4_output_close(&o), 0);
+    f = fopen(other, "r");
+    assert_non_null(f);
+    assert_non_null(fgets(text, sizeof text, f));
+    fclose(f);
+    assert_string_equal(text, "theirs");
+    assert_int_equal(remove(path) | remove(other) | remove(taken), 0);
+}
+
+/* A pipe, as a device or a folder, is not replaced by a file. */
+static void test_no_file(void **state)
+{
+    char path[256];
+    ted4_output o;
+    struct stat s;
+
+    (void)state;
+    snprintf(path, sizeof path, "%s/x.ply", folder);
+    assert_int_equal(mkfifo(path, 0600), 0);
+    assert_int_equal(ted4_output_open(&o, path), -1);
+    assert_int_equal(errno, EOPNOTSUPP);
+    assert_int_equal(lstat(path, &s), 0);
+    assert_true(S_ISFIFO(s.st_mode));
+    assert_int_equal(remove(path), 0);
+    assert_int_equal(mkdir(path, 0700), 0);
+    assert_int_equal(ted4_output_open(&o, path), -1);
+    assert_int_equal(errno, EISDIR);
+    assert_int_equal(rmdir(path), 0);
+}
+
+static int folder_make(void **state)
+{
+    (void)state;
+    temporary_folder(folder, "ted4-output");
+    return 0;
+}
+
+static int folder_remove(void **state)
+{
+    (void)state;
+    return rmdir(folder);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_name_taken),
+                                        cmocka_unit_test(test_no_file) };
+
+    return cmocka_run_group_tests(tests, folder_make, folder_remove);
+}
