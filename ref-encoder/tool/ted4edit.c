@@ -265,33 +265,42 @@ static int add_cameras(ted4_edit *e, const settings *s, const ted4_info *info, c
                                                            : failed(file, "too many chunks");
 }
 
+/* Finds the cameras of the file that count: the last ones that took pictures (16.4). Returns their
+ * chunk with *c filled; one without cameras if there is no other; or NULL, and c->n is 0. */
+static ted4_edit_chunk *find_taken(ted4_edit *e, ted4_cams *c)
+{
+    ted4_edit_chunk *found = NULL;
+    ted4_cams one;
+
+    c->n = 0;
+    for (size_t i = 0; i < e->n; i++) {
+        ted4_edit_chunk *chunk = &e->chunk[i];
+
+        if (chunk->dropped || strcmp(chunk->view.type, "CAMS") != 0 ||
+            ted4_cams_read(chunk->view.payload, chunk->view.size, &one) != 0 ||
+            one.kind != TED4_CAMS_TAKEN || (one.n == 0 && c->n > 0))
+            continue;
+        found = chunk;
+        *c = one;
+    }
+    return found;
+}
+
 /* --up without --cameras: the cameras of the file get another up direction; if it has none, a chunk
  * without cameras says it. */
 static int set_up(ted4_edit *e, const settings *s)
 {
-    uint8_t *payload = NULL;
-    size_t size = TED4_CAMS_HEAD;
     ted4_cams c;
+    ted4_edit_chunk *const old = find_taken(e, &c);
+    const size_t size = old != NULL ? old->view.size : TED4_CAMS_HEAD;
+    uint8_t *const payload = malloc(size);
 
-    for (size_t i = 0; i < e->n && payload == NULL; i++) {
-        ted4_edit_chunk *chunk = &e->chunk[i];
-
-        if (chunk->dropped || strcmp(chunk->view.type, "CAMS") != 0 ||
-            ted4_cams_read(chunk->view.payload, chunk->view.size, &c) != 0 ||
-            c.kind != TED4_CAMS_TAKEN)
-            continue;
-        size = chunk->view.size;
-        payload = malloc(size);
-        if (payload != NULL)
-            memcpy(payload, chunk->view.payload, size);
-        chunk->dropped = 1;
-    }
-    if (payload == NULL) {
-        payload = malloc(size);
-        c.n = 0;
-    }
     if (payload == NULL)
         return failed("--up", "out of memory");
+    if (old != NULL) {
+        memcpy(payload, old->view.payload, size);
+        old->dropped = 1;
+    }
     ted4_cams_put_head(payload, s->up, TED4_CAMS_TAKEN, c.n);
     return ted4_edit_add(e, "CAMS", 0, payload, size) == 0 ? TED4_EXIT_FINE
                                                            : failed("--up", "too many chunks");

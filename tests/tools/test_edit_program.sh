@@ -6,7 +6,7 @@
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 . tests/support/speak.sh
-need edit_program ted4enc ted4dec ted4info ted4edit ted4scene
+need edit_program python3 ted4enc ted4dec ted4info ted4edit ted4scene
 equal() { if [ "$2" = "$3" ]; then ok "$1"; else fail "$1" "$2, expected $3"; fi; }
 info() { "$TED4_BUILD/ted4info" "$out/$1.ted4"; }
 hash_of() { info "$1" | sed -n 's/^hash *//p'; }
@@ -51,6 +51,26 @@ equal path "$(info path | grep -c 'CAMS, 180 bytes: 2 cameras of a path, up 0 0 
 equal both_kinds "$(info path | grep -c 'CAMS')" 2
 edit "$out/path.ted4" -o "$out/path.ted4" -f --strip CAMS
 equal in_place "$(info path | grep -c 'CAMS')" 0
+
+# Of two chunks with cameras the last one counts (16.4), also once --up has changed it.
+edit "$out/plain.ted4" -o "$out/two.ted4" --cameras "$out/path.json"
+python3 - "$out/all.ted4" "$out/two.ted4" "$out/doubled.ted4" <<'END'
+import struct, sys
+def chunks(file):
+    at = 12
+    while at < len(file):
+        end = at + 20 + struct.unpack("<I", file[at + 8:at + 12])[0]
+        yield file[at:end]
+        at = end
+first, second = (open(name, "rb").read() for name in sys.argv[1:3])
+cams, = (c for c in chunks(second) if c[:4] == b"CAMS")
+*body, end = chunks(first)
+open(sys.argv[3], "wb").write(first[:12] + b"".join(body) + cams + end)
+END
+count() { "$TED4_BUILD/ted4info" "$out/$1.ted4" --cameras | grep -c width; }
+equal last_counts "$(count doubled)" 2
+edit "$out/doubled.ted4" -o "$out/up.ted4" --up 0,-1,0
+equal last_counts_with_up "$(count up) $(info up | grep -c 'CAMS.*2 cameras, up 0 -1 0$')" "2 1"
 
 # One clear line each, and no output.
 refuse() { expect "$1" 3 "$2" "$TED4_BUILD/ted4edit" "$out/plain.ted4" -o "$out/no.ted4" $3 "$4"
