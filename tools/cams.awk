@@ -2,7 +2,14 @@
 # fields doc/layouts.md describes. First file: name of the picture, tab, clip. The centre of the
 # first pixel is at 0.5, 0.5 for COLMAP, and at 0, 0 in cams.json. 17 digits give back every double.
 # SPDX-License-Identifier: BSD-2-Clause
-function text(s) { gsub(/\\/, "\\\\", s); gsub(/"/, "\\\"", s); return "\"" s "\"" }
+# Letter by letter: how many backslashes gsub makes is not the same in every awk.
+function text(s,   i, c, t) {
+    for (i = 1; i <= length(s); i++) {
+        c = substr(s, i, 1)
+        t = t (c == "\\" || c == "\"" ? "\\" : "") c
+    }
+    return "\"" t "\""
+}
 function row(a, b, c, d) { return sprintf("[%.17g, %.17g, %.17g, %.17g]", a, b, c, d) }
 FNR == 1 { file++ }
 file == 1 { split($0, p, "\t"); picture[++n] = p[1]; clip[n] = p[2]; next }

@@ -10,6 +10,12 @@ die() { echo "own-video.sh: $*" >&2; exit 3; }
 try() { "$@" </dev/null >>"$out/log" 2>&1 || die "$1 $2 failed: the end of $out/log says why"; }
 
 [ $# -ge 2 ] || die "usage: own-video.sh FOLDER VIDEO, or own-video.sh FOLDER CLIP CLIP..."
+# No name is an option, a protocol of ffmpeg, or an assignment of awk.
+for v; do
+    shift
+    case $v in /* | ./* | ../*) ;; *) v=./$v ;; esac
+    set -- "$@" "$v"
+done
 out=$1; shift
 for p in ffmpeg ffprobe colmap; do command -v $p >/dev/null ||
     die "there is no program $p (Debian: apt-get install --no-install-recommends ffmpeg colmap)";
@@ -59,11 +65,14 @@ if [ $one = 0 ]; then
         --output_type TXT
     try colmap model_converter --input_path "$work/sparse/0" --output_path "$out/points3d.ply" \
         --output_type PLY
-    for v; do echo "$(basename "${v%.*}").png	$(basename "$v")"; done >"$work/clips"
+    for v; do printf '%s.png\t%s\n' "$(basename "${v%.*}")" "$(basename "$v")"; done \
+        >"$work/clips" || die "$work/clips: cannot be written"
     rate=$(ffprobe -v error -select_streams v:0 -show_entries stream=avg_frame_rate -of csv=p=0 \
-        "$1" | awk -F/ 'NR == 1 { printf "%.17g", $1 / ($2 ? $2 : 1) }')
+        "$1" | awk -F/ 'NR == 1 && $1 + 0 > 0 && (NF == 1 || $2 + 0 > 0) {
+            printf "%.17g", $1 / (NF == 1 ? 1 : $2) }')
+    [ -n "$rate" ] || die "$1: no frame rate"
     awk -v rate="$rate" -f "$(dirname "$0")/cams.awk" "$work/clips" "$work/sparse/cameras.txt" \
-        "$work/sparse/images.txt" >"$out/cams.json"
+        "$work/sparse/images.txt" >"$out/cams.json" || die "$out/cams.json: cannot be written"
 fi
 rm -rf "$work/models" "$work/db"
 echo "own-video.sh: $out is a SCENE: ted4enc --check $out"

@@ -29,6 +29,58 @@ printf '1 1 0 0 0 %s 2 3 1 a.png\n\n' "$x" >"$out/images.txt"
 awk -v rate=30 -f tools/cams.awk "$out/list" "$out/cameras.txt" "$out/images.txt" >"$out/exact"
 check digits "$out/exact" "[[$f, 0, 159.5], [0, $f, 119.5], [0, 0, 1]]" "\"dist\": [$k, 0, 0, 0]" \
     "[1, 0, 0, $x]"
+# A name stays what it is in JSON, whatever awk is there.
+printf 'a"\\b.png\ta"\\b.mp4\n' >"$out/list"
+printf '1 1 0 0 0 0 2 3 1 a"\\b.png\n\n' >"$out/images.txt"
+for awk in awk mawk gawk; do
+    command -v $awk >/dev/null || continue
+    $awk -v rate=30 -f tools/cams.awk "$out/list" "$out/cameras.txt" "$out/images.txt" >"$out/named"
+    check named_$awk "$out/named" '"name": "a\"\\b", "video": "a\"\\b.mp4"'
+done
+
+# Names that the tools would take for something else, with tools that only seem to work.
+mkdir "$out/seem" "$out/here"
+cat >"$out/seem/ffmpeg" <<'END'
+#!/bin/sh
+for v; do
+    case $last$v in -i-* | -i*:*) case $v in */*) ;; *) exit 1 ;; esac ;; esac
+    last=$v
+done
+: >"$v"
+END
+cat >"$out/seem/ffprobe" <<'END'
+#!/bin/sh
+echo "${RATE-25/2}"
+END
+cat >"$out/seem/colmap" <<'END'
+#!/bin/sh
+command=$1
+for v; do
+    case $last in --output_path) to=$v ;; esac
+    last=$v
+done
+case $command in
+mapper) mkdir "$to/0"; printf '\003\0\0\0' >"$to/0/images.bin" ;;
+model_converter)
+    echo 1 SIMPLE_RADIAL 320 240 330 160 120 0 >"$to/cameras.txt" 2>/dev/null
+    for p in "$to/../images"/*; do printf '1 1 0 0 0 0 2 3 1 %s\n\n' "${p##*/}"; done \
+        >"$to/images.txt" 2>/dev/null ;;
+esac
+exit 0
+END
+chmod +x "$out/seem"/*
+: >"$out/here/-a.mp4"; : >"$out/here/12:30.mp4"; : >"$out/here/b\\tc.mp4"
+odd() { name=$1 status=$2 text=$3; shift 3
+    expect "$name" "$status" "$text" env PATH="$out/seem:$PATH" "$sh" -c 'cd "$0/here" && "$@"' \
+        "$out" "$@"; }
+odd odd_names 0 'x=1 is a SCENE' "$sh" "$PWD/tools/own-video.sh" x=1 -a.mp4 12:30.mp4 'b\tc.mp4'
+check odd_cameras "$out/here/x=1/cams.json" '"fps": 12.5,' '{"name": "-a", "video": "-a.mp4", ' \
+    '{"name": "12:30", "video": "12:30.mp4", ' '{"name": "b\\tc", "video": "b\\tc.mp4", '
+for r in 0/0 N/A ''; do
+    odd no_rate 3 '12:30.mp4: no frame rate' env RATE="$r" "$sh" "$PWD/tools/own-video.sh" y \
+        12:30.mp4 -a.mp4
+    rm -rf "$out/here/y"
+done
 for p in ffmpeg ffprobe colmap; do command -v $p >/dev/null ||
     { skip own_video "there is no $p"; exit $bad; }; done
 refuse no_file 3 "$out/absent.mp4: no such file" sh tools/own-video.sh "$out/s" "$out/absent.mp4"
