@@ -7,6 +7,7 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,6 +19,57 @@
 enum { MAX_ARGUMENTS = 24, MAX_PROCESSES = 256 };
 /* A pipe is read in pieces of 16 KiB and holds 64 KiB (pipe(7)). */
 enum { PIECE = 1 << 14, PIECES = 4 };
+
+/* The process groups that run; 0: none. No terminal reaches them, and each is timed by this program
+ * alone, so that they must not outlive it. */
+static atomic_int running[MAX_PROCESSES];
+
+static void end_running(void)
+{
+    for (int i = 0; i < MAX_PROCESSES; i++) {
+        const int group = atomic_load(&running[i]);
+
+        if (group > 0)
+            kill(-group, SIGKILL);
+    }
+}
+
+/* The default action takes effect when the handler returns. */
+static void take(int signal)
+{
+    end_running();
+    raise(signal);
+}
+
+/* Puts a group in the place of another; 0: of none, or none. */
+static void change_running(int from, int to)
+{
+    int i = 0;
+
+    while (i < MAX_PROCESSES && !atomic_compare_exchange_strong(&running[i], &(int) { from }, to))
+        i++;
+}
+
+/* From the first call on, what runs is ended with this program: by a signal, unless that is
+ * ignored, or by its own end. */
+static void watch(void)
+{
+    static const int signals[] = { SIGINT, SIGTERM, SIGHUP };
+    static int watched;
+    struct sigaction mine, before;
+
+    if (watched)
+        return;
+    watched = 1;
+    memset(&mine, 0, sizeof mine);
+    mine.sa_handler = take;
+    mine.sa_flags = (int)SA_RESETHAND;
+    for (size_t i = 0; i < sizeof signals / sizeof *signals; i++)
+        if (sigaction(signals[i], NULL, &before) == 0 && before.sa_handler != SIG_IGN)
+            sigaction(signals[i], &mine, NULL);
+    if (atexit(end_running) != 0)
+        conf_die("no memory");
+}
 
 static _Noreturn void child(const conf_process_options *o, const char *const *argv, int out,
                             int err)
@@ -59,6 +111,7 @@ void conf_process_start(conf_process *p, const conf_process_options *o, const ch
     int out[2], err[2];
 
     memset(p, 0, sizeof *p);
+    watch();
     if (pipe(out) != 0 || pipe(err) != 0)
         conf_die("pipe: %s", strerror(errno));
     for (int i = 0; i < 2; i++) {
@@ -73,6 +126,7 @@ void conf_process_start(conf_process *p, const conf_process_options *o, const ch
     if (p->pid == 0)
         child(o, argv, out[1], err[1]);
     setpgid(p->pid, p->pid);
+    change_running(0, (int)p->pid);
     close(out[1]);
     close(err[1]);
     p->out = out[0];
@@ -104,16 +158,16 @@ static int drain(int *fd, conf_bytes *to, size_t most, int keep_all)
     return 1;
 }
 
-/* Kills what is left of the process group and takes the exit status. */
+/* Kills what is left of the process group and takes the exit status; not the other way around, as
+ * afterwards the number may be another's. */
 static void finish(conf_process *p, conf_process_end end)
 {
     int status = 0;
 
-    if (end != CONF_ENDED)
-        kill(-p->pid, SIGKILL);
+    kill(-p->pid, SIGKILL);
+    change_running((int)p->pid, 0);
     while (waitpid(p->pid, &status, 0) < 0 && errno == EINTR)
         ;
-    kill(-p->pid, SIGKILL); /* its remaining children */
     if (p->out >= 0)
         close(p->out);
     if (p->err >= 0)

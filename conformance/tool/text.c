@@ -123,7 +123,7 @@ void conf_make_folder(const char *path)
     char part[CONF_PATH];
 
     conf_path(part, "%s", path);
-    for (char *p = part + 1;; p++)
+    for (char *p = part + 1; part[0] != '\0'; p++)
         if (*p == '/' || *p == '\0') {
             const char end = *p;
 

@@ -1,9 +1,12 @@
 /* test_process.c - decoders as processes (conformance/tool/process.h): after they have ended, their
  * output is complete, whenever the end was noticed.
  * SPDX-License-Identifier: BSD-2-Clause */
+#include <poll.h>
 #include <signal.h>
 #include <sys/time.h>
+#include <sys/wait.h>
 #include <time.h>
+#include <unistd.h>
 
 #include "test.h"
 #include "conformance/tool/process.h"
@@ -58,12 +61,77 @@ static void test_left_behind(void **state)
     conf_process_free(&p);
 }
 
+static int status_of(pid_t child)
+{
+    int status = -1;
+
+    assert_true(child > 0);
+    assert_int_equal(waitpid(child, &status, 0), child);
+    return status;
+}
+
+/* A runner that a signal ends takes the decoders with it: nobody else would end one that hangs. */
+static void test_runner_ended(void **state)
+{
+    static const int signals[] = { SIGINT, SIGTERM, SIGHUP };
+    const conf_process_options o = { "sleep 60; exit 0;", NULL, 60, 0 };
+
+    (void)state;
+    for (size_t i = 0; i < sizeof signals / sizeof *signals; i++) {
+        conf_process p, *const all[] = { &p };
+        pid_t decoder = 0;
+        int ends[2];
+
+        assert_int_equal(pipe(ends), 0);
+
+        const pid_t runner = fork();
+
+        if (runner == 0) {
+            conf_process_start(&p, &o, none);
+            if (write(ends[1], &p.pid, sizeof p.pid) != sizeof p.pid)
+                _exit(100);
+            for (;;)
+                (void)conf_process_wait(all, 1, 1000);
+        }
+        assert_int_equal(read(ends[0], &decoder, sizeof decoder), sizeof decoder);
+        assert_int_equal(kill(-decoder, 0), 0);
+        assert_int_equal(kill(runner, signals[i]), 0);
+
+        const int status = status_of(runner);
+
+        assert_true(WIFSIGNALED(status) && WTERMSIG(status) == signals[i]);
+        close(ends[1]); /* the decoder has the other one that is still open */
+        assert_int_equal(poll(&(struct pollfd) { ends[0], POLLIN, 0 }, 1, 20000), 1);
+        assert_int_equal(read(ends[0], &decoder, sizeof decoder), 0);
+        close(ends[0]);
+    }
+}
+
+/* The folder of a file in the root, as of /results.json: there is nothing to make. */
+static void test_root(void **state)
+{
+    (void)state;
+
+    const pid_t child = fork();
+
+    if (child == 0) {
+        conf_make_folder("");
+        _exit(0);
+    }
+    assert_int_equal(status_of(child), 0);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_late_answer),
         cmocka_unit_test(test_left_behind),
+        cmocka_unit_test(test_runner_ended),
+        cmocka_unit_test(test_root),
     };
 
+    /* A shell that runs commands in the background, or nohup, makes them ignore signals. */
+    signal(SIGINT, SIG_DFL);
+    signal(SIGHUP, SIG_DFL);
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
