@@ -1,8 +1,9 @@
 # Debian packages, and the list of what they are made of; included by the Makefile.
 # The packages of the last commit, in build/deb. MAINTAINER: "NAME <ADDRESS>" of who answers for
-# them; without it they name nobody, at an address that cannot exist (RFC 2606).
+# them; without it they name nobody, at an address that cannot exist (RFC 2606). make gives the
+# script what its command line sets, in the environment, where no quotes are needed.
 deb:
-	MAINTAINER='$(MAINTAINER)' sh tools/make-deb.sh $B/deb
+	sh tools/make-deb.sh $B/deb
 
 # SPDX 2.3: every file of the source tree, and what builds and tests it.
 sbom:

@@ -29,4 +29,14 @@ gives folder_of_a_make_within build-x B MAKEFLAGS='-- B=build-x' make
 cores=$(env -u OMP_NUM_THREADS -u OMP_THREAD_LIMIT nproc)
 gives jobs "-j$cores" JOBS OMP_NUM_THREADS=64 OMP_THREAD_LIMIT=65 make
 gives jobs_asked '' JOBS make -j1
+
+# A name with an apostrophe comes to make-deb.sh as it is.
+name="Pat O'Brien <pat@example.org>"
+mkdir "$out/bin"
+printf '#!/bin/sh\nprintf "%%s\\n" "$MAINTAINER"\n' >"$out/bin/sh"
+chmod +x "$out/bin/sh"
+env -u MAKEFLAGS -u MAKELEVEL -u MFLAGS -u MAINTAINER PATH="$out/bin:$PATH" \
+    make -s deb "MAINTAINER=$name" >"$out/value" 2>&1
+if [ "$(cat "$out/value")" = "$name" ]; then ok maintainer
+else fail maintainer "$(cat "$out/value")"; fi
 exit $bad
