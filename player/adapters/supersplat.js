@@ -58,7 +58,8 @@ export class FrameSource {
     return { asset, rotation: this.#rotation.clone() };
   }
 
+  // A scene whose client is terminated is gone already, and its close() rejects.
   destroy() {
-    this.#scene.close?.();
+    this.#scene.close?.().catch(() => {});
   }
 }

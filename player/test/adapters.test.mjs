@@ -1,0 +1,25 @@
+// adapters.test.mjs - adapters without a browser, with a PlayCanvas that only has the names. Run by
+// `make player-test`. SPDX-License-Identifier: BSD-2-Clause
+import assert from "node:assert/strict";
+import { register } from "node:module";
+import { test } from "node:test";
+
+const STUB = "export class GSplatData {} export class Quat {} export class Vec3 {}";
+register("data:text/javascript," + encodeURIComponent(`
+  export async function resolve(name, context, next) {
+    return name !== "playcanvas" ? next(name, context)
+      : { url: "data:text/javascript," + encodeURIComponent(${JSON.stringify(STUB)}),
+        shortCircuit: true };
+  }`));
+const { FrameSource } = await import("../adapters/supersplat.js");
+
+// A promise that is rejected, and that nobody looks at, fails the test that runs.
+test("a source may be destroyed after its client, whose scenes are gone by then", async () => {
+  const close = async () => { throw new Error("the worker is terminated"); };
+  new FrameSource({ info: { frames: 1 }, close }, () => null).destroy();
+  await new Promise((resolve) => { setTimeout(resolve, 10); });
+});
+
+test("a source of a scene without close() may be destroyed", () => {
+  new FrameSource({ info: { frames: 1 } }, () => null).destroy();
+});
