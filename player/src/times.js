@@ -25,9 +25,9 @@ export function timeOf(num, den) {
     : { num: Number(rounded(a * last, b)), den: DEN_END - 1 };
 }
 
-// R-HDR-005: of frame j, from 0 to frames - 1.
+// R-HDR-005: of frame j, from 0 to frames - 1. Of another one: no time, which a decoder refuses.
 export function timeOfFrame(j, { frames }) {
-  return timeOf(j, frames - 1);
+  return frames > 1 || j == 0 ? timeOf(j, frames - 1) : { num: 1, den: 0 };
 }
 
 // R-MED-001: of a decimal number of seconds after the first frame, a text. undefined: it is none.

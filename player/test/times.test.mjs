@@ -14,6 +14,11 @@ test("R-HDR-005: times are fractions in lowest terms, rounded where these are to
     [1000000001, UINT32_MAX, 3906250, LAST], // 3906249.77
     [29, 2 ** 25 - 1, 14, LAST], [11, 2 ** 25 - 1, 6, LAST], // 14.5 and 5.5: the even one
   ]) assert.deepEqual(timeOfFrame(j, { frames }), { num, den }, `${j} of ${frames}`);
+  // The decoder refuses what is no time.
+  for (const [j, frames] of [[1, 1], [-1, 1], [NaN, 1], [10, 10], [-3, 10]]) {
+    const { num, den } = timeOfFrame(j, { frames });
+    assert.ok(!(num >= 0 && num <= den && den > 0), `${j} of ${frames}: ${num} / ${den}`);
+  }
   assert.deepEqual(timeOf(6n, 8n), { num: 3, den: 4 });
 });
 
