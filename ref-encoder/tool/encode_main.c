@@ -30,7 +30,7 @@ typedef struct {
     const ted4_parallel *parallel;
     ted4_teller *teller;
     ted4_exchange *exchange; /* NULL: alone */
-    double begin;            /* of ted4_seconds */
+    double begin;            /* of ted4_clock */
 } encoder;
 
 /* Returns whether this process writes files and messages. */

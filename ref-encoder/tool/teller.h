@@ -32,7 +32,7 @@ typedef struct {
     int train_psnr;               /* 1: psnr is that of training pictures */
     size_t anchors;
     double left; /* remaining seconds as estimated at time when */
-    double when; /* of ted4_seconds */
+    double when; /* of ted4_clock */
 } ted4_facts;
 
 typedef struct {
