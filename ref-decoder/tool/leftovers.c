@@ -30,6 +30,13 @@ void ted4_leftovers_add(const char *path, pid_t writer)
     }
 }
 
+void ted4_leftovers_written(const char *path, pid_t writer)
+{
+    for (int i = 0; i < TED4_LEFTOVERS; i++)
+        if (atomic_load(&slots[i].path) == path)
+            atomic_store(&slots[i].writer, (int)writer);
+}
+
 void ted4_leftovers_forget(const char *path)
 {
     for (int i = 0; i < TED4_LEFTOVERS; i++) {

@@ -17,6 +17,9 @@ void ted4_leftovers_watch(void);
  * the child process that writes the file and is ended with this one, or 0. May be called from any
  * thread. */
 void ted4_leftovers_add(const char *path, pid_t writer);
+/* Changes the writer of a file: to a child process that has begun, or to 0 before the number of one
+ * that has ended can be another's. path: the pointer that was added. */
+void ted4_leftovers_written(const char *path, pid_t writer);
 /* The file has its name, or is gone. path: the pointer that was added. */
 void ted4_leftovers_forget(const char *path);
 /* Ends the writers and removes the files. For signal handlers. */

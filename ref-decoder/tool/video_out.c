@@ -5,6 +5,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <inttypes.h>
+#include <signal.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -32,11 +33,38 @@ static void become_ffmpeg(const char *size, const char *rate, const char *to, in
     _exit(NO_FFMPEG);
 }
 
+/* Starts ffmpeg with the pictures from a pipe. Returns 0, or -1 with errno set. */
+static int start(ted4_video_out *v, const char *size, const char *rate)
+{
+    char to[TED4_PATH_SIZE + 8];
+    int ends[2];
+
+    /* "file:": no name is taken for an option or a protocol. */
+    snprintf(to, sizeof to, "file:%s", v->file.temporary);
+    if (pipe(ends) != 0)
+        return -1;
+    (void)fcntl(ends[1], F_SETFD, FD_CLOEXEC);
+    v->child = fork();
+    if (v->child == 0)
+        become_ffmpeg(size, rate, to, ends[0], fileno(v->messages));
+    v->pipe = ends[1];
+
+    const int why = errno;
+
+    close(ends[0]);
+    if (v->child > 0) {
+        ted4_leftovers_written(v->file.temporary, v->child);
+        return 0;
+    }
+    close(v->pipe);
+    errno = why;
+    return -1;
+}
+
 int ted4_video_out_open(ted4_video_out *v, const char *path, int width, int height,
                         uint32_t rate_num, uint32_t rate_den, char *why, size_t why_size)
 {
-    char size[32], rate[32], to[TED4_PATH_SIZE + 8];
-    int ends[2];
+    char size[32], rate[32];
 
     snprintf(size, sizeof size, "%dx%d", width, height);
     snprintf(rate, sizeof rate, "%" PRIu32 "/%" PRIu32, rate_num, rate_den);
@@ -46,27 +74,14 @@ int ted4_video_out_open(ted4_video_out *v, const char *path, int width, int heig
         snprintf(why, why_size, "%s", strerror(errno));
         return -1;
     }
-    /* "file:": no name is taken for an option or a protocol. */
-    snprintf(to, sizeof to, "file:%s", v->file.temporary);
     v->messages = tmpfile();
-    if (v->messages == NULL || pipe(ends) != 0) {
-        snprintf(why, why_size, "%s", strerror(errno));
-        if (v->messages != NULL)
-            fclose(v->messages);
-        ted4_output_cancel(&v->file);
-        return -1;
-    }
-    (void)fcntl(ends[1], F_SETFD, FD_CLOEXEC);
-    v->child = fork();
-    if (v->child == 0)
-        become_ffmpeg(size, rate, to, ends[0], fileno(v->messages));
-    if (v->child > 0) {
-        ted4_leftovers_forget(v->file.temporary);
-        ted4_leftovers_add(v->file.temporary, v->child);
-    }
-    close(ends[0]);
-    v->pipe = ends[1];
-    return 0;
+    if (v->messages != NULL && start(v, size, rate) == 0)
+        return 0;
+    snprintf(why, why_size, "%s", strerror(errno));
+    if (v->messages != NULL)
+        fclose(v->messages);
+    ted4_output_cancel(&v->file);
+    return -1;
 }
 
 int ted4_video_out_write(ted4_video_out *v, const uint8_t *rgb)
@@ -102,18 +117,32 @@ static int is_empty(const char *path)
     return stat(path, &there) != 0 || there.st_size == 0;
 }
 
+/* Waits for ffmpeg. A signal ends it, with this process, until it has ended by itself; after that,
+ * its number may be another's. */
+static int wait_for(const ted4_video_out *v)
+{
+    siginfo_t info;
+    int status = -1;
+
+    while (waitid(P_PID, (id_t)v->child, &info, WEXITED | WNOWAIT) < 0 && errno == EINTR)
+        ;
+    ted4_leftovers_written(v->file.temporary, 0);
+    while (waitpid(v->child, &status, 0) < 0 && errno == EINTR)
+        ;
+    return status;
+}
+
 int ted4_video_out_close(ted4_video_out *v, int keep, char *why, size_t why_size)
 {
     char words[200];
-    int status = -1, bad;
+    int status, bad;
 
     close(v->pipe);
-    while (v->child > 0 && waitpid(v->child, &status, 0) < 0 && errno == EINTR)
-        ;
+    status = wait_for(v);
     first_words(v->messages, words, sizeof words);
     fclose(v->messages);
-    bad = v->broken || v->child <= 0 || !WIFEXITED(status) || WEXITSTATUS(status) != 0;
-    if (bad && v->child > 0 && WIFEXITED(status) && WEXITSTATUS(status) == NO_FFMPEG)
+    bad = v->broken || !WIFEXITED(status) || WEXITSTATUS(status) != 0;
+    if (bad && WIFEXITED(status) && WEXITSTATUS(status) == NO_FFMPEG)
         snprintf(why, why_size, "videos need the program ffmpeg, which cannot be started");
     else if (bad)
         snprintf(why, why_size, "ffmpeg failed%s%s", words[0] != '\0' ? ": " : "", words);
