@@ -53,7 +53,7 @@ typedef struct ted4_scene ted4_scene;
 /* Decodes a whole file of size bytes strictly (spec 3, 5 to 10, 14). Returns TED4_OK with *scene
  * set; the caller owns it and frees it with ted4_scene_free. On any other verdict, *scene is NULL,
  * and *e holds the error and its byte offset. The library keeps no reference to data, which may be
- * NULL if size is 0. o may be NULL. */
+ * NULL if size is 0. o and e may be NULL. */
 ted4_status ted4_decode(const void *data, size_t size, const ted4_options *o, ted4_scene **scene,
                         ted4_error *e);
 /* Frees a scene. s may be NULL. */
@@ -133,8 +133,8 @@ void ted4_scene_info(const ted4_scene *s, ted4_info *info);
 typedef void ted4_sink(void *user, const void *bytes, size_t size);
 
 /* Decodes a file and writes its tier T0 to the sink. Returns the verdict of ted4_decode. If that is
- * not TED4_OK, *e holds the error, and the bytes written so far are to be discarded. o may be NULL;
- * its trace is not called. */
+ * not TED4_OK, *e holds the error, and the bytes written so far are to be discarded. o and e may be
+ * NULL; the trace of o is not called. */
 ted4_status ted4_dump_syntax(const void *data, size_t size, const ted4_options *o, ted4_sink *sink,
                              void *user, ted4_error *e);
 /* Writes one of the tiers T1 to T4 (tier = 1 .. 4) of a decoded scene to the sink. Returns TED4_OK
