@@ -5,7 +5,7 @@ import { Ted4Client } from "../src/client.js";
 
 export class Evaluators {
   #clients;
-  #loaded; // by the first worker
+  #loaded = []; // what worker i says of the module
   #wasm;
   #scenes = []; // of the open file, one per worker that has it: { scene, waiting }
   #bytes = null;
@@ -14,16 +14,26 @@ export class Evaluators {
   constructor(workers, wasm) {
     this.#clients = workers.map((worker) => new Ted4Client(worker));
     this.#wasm = wasm;
-    this.#loaded = [this.#clients[0].load(wasm)];
+    this.#load(0).catch(() => {}); // the first file that is opened tries again
+  }
+
+  // Gives worker i the module, once. What failed is tried again the next time.
+  #load(i) {
+    this.#loaded[i] ??= this.#clients[i].load(this.#wasm).catch((error) => {
+      this.#loaded[i] = undefined;
+      throw error;
+    });
+    return this.#loaded[i];
   }
 
   // Opens a file in the first worker: { scene, use }. use() lets go of the file before and takes
   // this one. Rejects with Ted4Error.
   async open(bytes) {
-    await this.#loaded[0];
+    await this.#load(0);
     const scene = await this.#clients[0].open(bytes);
     const use = () => {
-      for (const { scene: before } of this.#scenes) before.close();
+      // A worker that has failed has no scene to let go of.
+      for (const { scene: before } of this.#scenes) before.close().catch(() => {});
       this.#scenes = [{ scene, waiting: 0 }];
       this.#bytes = bytes;
     };
@@ -35,7 +45,7 @@ export class Evaluators {
     const bytes = this.#bytes;
     await Promise.all(this.#clients.slice(1).map(async (client, i) => {
       try {
-        await (this.#loaded[i + 1] ??= client.load(this.#wasm));
+        await this.#load(i + 1);
         const scene = await client.open(bytes);
         if (bytes === this.#bytes) this.#scenes.push({ scene, waiting: 0 });
         else scene.close();

@@ -5,6 +5,7 @@ import { test } from "node:test";
 import { centreOf, fitted, forward, lookingAt, orbited } from "../page/camera.js";
 import { bytesByType, camerasOf, chunksOf, metaOf } from "../page/chunks.js";
 import { Clock } from "../page/clock.js";
+import { Evaluators } from "../page/evaluators.js";
 import { cameraOnPath, placeOnPath } from "../page/path.js";
 import { startCamera } from "../page/start.js";
 
@@ -222,4 +223,22 @@ test("of many Gaussians at most 4096 say where a viewer begins", () => {
     assert.ok(looked.size <= 4096 && looked.size > Math.min(n, 4096) / 2, `${looked.size}`);
     assert.ok(n === 1 || Math.abs(distance - 2.2 * 0.4) < 0.01, `${distance}`);
   }
+});
+
+test("a module that could not be loaded is loaded again for the next file", async () => {
+  let loads = 0;
+  const worker = {
+    postMessage({ call, type }) {
+      const answer = type === "load" && loads++ < 2 ? { error: { message: "503" } }
+        : { value: { info: {} } };
+      setTimeout(() => this.onmessage({ data: { call, ...answer } }));
+    },
+  };
+  const evaluators = new Evaluators([worker], "http://localhost/ted4.wasm");
+  // Nobody has asked for a file yet, so that nobody is to hear of it.
+  await new Promise((resolve) => { setTimeout(resolve, 20); });
+  await assert.rejects(evaluators.open(new Uint8Array(1)), { message: "503" });
+  assert.ok((await evaluators.open(new Uint8Array(1))).scene);
+  assert.ok((await evaluators.open(new Uint8Array(1))).scene);
+  assert.equal(loads, 3);
 });
