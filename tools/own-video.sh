@@ -29,13 +29,14 @@ mkdir -p "$work/images" "$work/models" "$work/sparse" || die "$out: cannot be ma
 
 if [ $# -eq 1 ]; then
     one=1
-    try ffmpeg -i "$1" -vf "fps=$FPS" -q:v 2 "$out/images/%05d.jpg"
+    try ffmpeg -i "$1" -vf "fps=$FPS" -q:v 2 \
+        "$(printf '%s\n' "$out" | sed 's/%/%%/g')/images/%05d.jpg"
 else
     one=0
     for v; do
         name=$(basename "${v%.*}")
         [ ! -e "$work/images/$name.png" ] || die "$v: another clip is called $name, too"
-        try ffmpeg -i "$v" -frames:v 1 "$work/images/$name.png"
+        try ffmpeg -i "$v" -frames:v 1 -update 1 "$work/images/$name.png"
         ln -L "$v" "$out/" 2>/dev/null || cp "$v" "$out/" || die "$v: cannot be copied to $out"
     done
 fi

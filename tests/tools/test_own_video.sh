@@ -122,11 +122,12 @@ mv "$out/clips/cam 04.mp4" "$out/elsewhere.mp4"
 ln -s ../elsewhere.mp4 "$out/clips/cam 04.mp4"
 XDG_CACHE_HOME=$out/cache
 export XDG_CACHE_HOME
-expect walk_made 0 "12 of 12 pictures have poses" env FPS=2 sh tools/own-video.sh "$out/walked" \
-    "$out/walk.mp4"
+mkdir "$out/50%"
+expect walk_made 0 "12 of 12 pictures have poses" env FPS=2 sh tools/own-video.sh \
+    "$out/50%/walked" "$out/walk.mp4"
 refuse too_short 3 "$out/walk.mp4: 0 pictures at FPS=0.01" env FPS=0.01 sh tools/own-video.sh \
     "$out/short" "$out/walk.mp4"
-looks walked "11 train, 1 test" "frames      12"
+looks 50%/walked "11 train, 1 test" "frames      12"
 # A clip whose file has a rotation flag gives an empty line after its rate.
 mkdir "$out/bin"
 printf '#!/bin/sh\n%s "$@"; echo\n' "$(command -v ffprobe)" >"$out/bin/ffprobe"
