@@ -22,9 +22,8 @@ int ted4_file_writable(const char *path, int force, const char *instead, char *w
         return -1;
     }
     if (stat(path, &there) == 0 && !S_ISREG(there.st_mode)) {
-        snprintf(why, why_size, "%s: is %s", path,
-                 S_ISDIR(there.st_mode) ? "a folder, expected a file name"
-                                        : "no file, but a device or a pipe");
+        snprintf(why, why_size, "%s: is %s, expected a file name", path,
+                 S_ISDIR(there.st_mode) ? "a folder" : "a pipe or a device");
         return -1;
     }
     if (!force && ted4_output_exists(path)) {
