@@ -103,7 +103,7 @@ int ted4_action_open(ted4_session *s)
                                    .trace = set->trace ? print_element : NULL };
     ted4_salvage what;
     size_t size;
-    uint8_t *const data = ted4_read_file(set->input, &size);
+    uint8_t *const data = ted4_read_ted4(set->input, &size);
     const double start = ted4_clock();
     int code = TED4_EXIT_FINE;
 

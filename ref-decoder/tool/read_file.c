@@ -6,15 +6,24 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Reads into a buffer that doubles, so that pipes work and no reported file size is trusted. */
-uint8_t *ted4_read_stream(FILE *f, size_t *size)
+/* Does data of at least 8 bytes begin as a TED4 file does (spec 5.1)? */
+static int begins_as_ted4(const uint8_t *data)
+{
+    static const uint8_t magic[8] = { 0x89, 'T', 'E', 'D', '4', '\r', '\n', 0x1a };
+
+    return memcmp(data, magic, sizeof magic) == 0;
+}
+
+/* Reads into a buffer that doubles, so that pipes work and no reported file size is trusted. With
+ * only_ted4, the first buffer is all that is read of something else. */
+static uint8_t *read_stream(FILE *f, int only_ted4, size_t *size)
 {
     size_t capacity = 1 << 16, n = 0;
     uint8_t *data = malloc(capacity);
 
     while (data != NULL) {
         n += fread(data + n, 1, capacity - n, f);
-        if (n < capacity)
+        if (n < capacity || (only_ted4 && !begins_as_ted4(data)))
             break;
         uint8_t *const more = capacity > SIZE_MAX / 2 ? NULL : realloc(data, capacity *= 2);
 
@@ -30,7 +39,7 @@ uint8_t *ted4_read_stream(FILE *f, size_t *size)
     return data;
 }
 
-uint8_t *ted4_read_file(const char *path, size_t *size)
+static uint8_t *read_path(const char *path, int only_ted4, size_t *size)
 {
     const int is_stdin = strcmp(path, "-") == 0;
     FILE *const f = is_stdin ? stdin : fopen(path, "rb");
@@ -38,7 +47,7 @@ uint8_t *ted4_read_file(const char *path, size_t *size)
 
     if (f == NULL)
         return NULL;
-    data = ted4_read_stream(f, size);
+    data = read_stream(f, only_ted4, size);
     if (!is_stdin) {
         const int why = errno;
 
@@ -46,4 +55,19 @@ uint8_t *ted4_read_file(const char *path, size_t *size)
         errno = why;
     }
     return data;
+}
+
+uint8_t *ted4_read_stream(FILE *f, size_t *size)
+{
+    return read_stream(f, 0, size);
+}
+
+uint8_t *ted4_read_file(const char *path, size_t *size)
+{
+    return read_path(path, 0, size);
+}
+
+uint8_t *ted4_read_ted4(const char *path, size_t *size)
+{
+    return read_path(path, 1, size);
 }

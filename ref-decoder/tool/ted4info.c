@@ -417,7 +417,8 @@ static int run(const settings *s)
     ted4_scene *scene = NULL;
     ted4_info info;
     size_t size;
-    uint8_t *const data = ted4_read_file(s->input, &size);
+    uint8_t *const data = s->on[OPT_VALIDATE] ? ted4_read_file(s->input, &size)
+                                              : ted4_read_ted4(s->input, &size);
     int code;
 
     if (data == NULL)

@@ -319,7 +319,7 @@ static int work(const encoder *e)
 /* Reads the file of --transcode. Returns NULL, with *status set and a message, if that fails. */
 static uint8_t *read_input(const encoder *e, size_t *size, int *status)
 {
-    uint8_t *const file = ted4_read_file(e->request->transcode, size);
+    uint8_t *const file = ted4_read_ted4(e->request->transcode, size);
 
     if (file == NULL) {
         ted4_teller_clear(e->teller);

@@ -386,7 +386,7 @@ static int run(const settings *s)
     ted4_info info;
     ted4_edit e;
     size_t size;
-    uint8_t *const file = ted4_read_file(s->input, &size);
+    uint8_t *const file = ted4_read_ted4(s->input, &size);
     int code;
 
     if (file == NULL)

@@ -223,7 +223,7 @@ static int open_file(session *s)
     const ted4_options options = { .parallel = &s->parallel };
     ted4_error e = { TED4_OK, 0 };
     ted4_scene *scene;
-    uint8_t *const bytes = ted4_read_file(s->set->input, &s->sum.bytes);
+    uint8_t *const bytes = ted4_read_ted4(s->set->input, &s->sum.bytes);
     const double start = ted4_clock();
 
     if (bytes == NULL) {

@@ -55,6 +55,30 @@ static void test_verdicts(void **state)
     assert_non_null(strstr(out, "--sh-degree N"));
 }
 
+/* What is no TED4 file is refused by its beginning: a film of gigabytes, or a device without end,
+ * would fill the memory. */
+static void test_no_such_format(void **state)
+{
+    static const char *const reader[] = { "ted4dec -", "ted4info -", "ted4eval - .",
+                                          "ted4edit - -o new.ted4 --title x",
+                                          "ted4enc --transcode - -o new.ted4" };
+    size_t size;
+
+    (void)state;
+    need_programs();
+    for (size_t i = 0; i < sizeof reader / sizeof *reader; i++) {
+        assert_int_equal(run("{ head -c 100000000 /dev/zero && : >all; } | %s", reader[i]), 1);
+        assert_false(exists("all"));
+        char *const err = (char *)contents("err", &size);
+
+        err[size] = '\0';
+        assert_non_null(strstr(err, "byte 0: not a TED4 file [con.magic]"));
+        free(err);
+    }
+    assert_int_equal(run("head -c 1000000 /dev/zero | ted4info - --validate --json"), 1);
+    assert_non_null(strstr(out, "\"bytes\":1000000"));
+}
+
 /* Runs ted4dec, which must end with status 3 and one line on stderr that holds the text. */
 static void expect_refusal(const char *arguments, const char *text)
 {
@@ -283,7 +307,7 @@ int main(void)
         cmocka_unit_test(test_verdicts),       cmocka_unit_test(test_usage),
         cmocka_unit_test(test_default_degree), cmocka_unit_test(test_up),
         cmocka_unit_test(test_several),        cmocka_unit_test(test_seconds),
-        cmocka_unit_test(test_help),
+        cmocka_unit_test(test_help),           cmocka_unit_test(test_no_such_format),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }
