@@ -345,11 +345,12 @@ static void print_json(const settings *s, const ted4_info *info, const ted4_budg
     json_t *o;
 
     ted4_hex(hash, info->hash, sizeof info->hash);
-    o = json_pack("{s:o, s:s, s:I, s:i, s:s, s:I, s:I, s:I, s:o}", "file",
+    o = json_pack("{s:o, s:s, s:I, s:s, s:i, s:s, s:I, s:I, s:I, s:o}", "file",
                   ted4_json_string(s->input), "verdict", "valid", "bytes", (json_int_t)size,
-                  "level", info->level, "hash", hash, "anchors", (json_int_t)info->n_anchors,
-                  "moving", (json_int_t)info->n_dynamic, "gaussians", (json_int_t)info->n_gaussians,
-                  "header", header_json(b));
+                  "profile", data[PROFILE_AT] == 0 ? "main" : "compact", "level", info->level,
+                  "hash", hash, "anchors", (json_int_t)info->n_anchors, "moving",
+                  (json_int_t)info->n_dynamic, "gaussians", (json_int_t)info->n_gaussians, "header",
+                  header_json(b));
     json_object_set_new(o, "seconds",
                         info->frames > 1 ? json_real(last_second(info)) : json_integer(0));
     if (s->on[OPT_BUDGET])

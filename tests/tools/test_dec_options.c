@@ -277,6 +277,7 @@ static void test_seconds(void **state)
     json_t *const o = json_loads(out, 0, NULL);
 
     assert_true(fabs(json_number_value(json_object_get(o, "seconds")) - last) <= 1e-6 * last);
+    assert_string_equal(json_string_value(json_object_get(o, "profile")), "main");
     json_decref(o);
 }
 
