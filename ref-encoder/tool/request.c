@@ -79,7 +79,8 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
     [OPT_CAPACITY] = { 0, "capacity", "HOW",
                        "auto (default): no more model than pays; fixed: as options say" },
     [OPT_WHY] = { 0, "why", NULL, "the file says what was decided and why: ted4info --why" },
-    [OPT_SET] = { 0, "set", "NAME=VALUE", "any training option of the table below" },
+    [OPT_SET] = { 0, "set", "NAME=VALUE",
+                  "any training option of the table below; the last value holds" },
     [OPT_DOWNSCALE] = { 0, "downscale", "N", "integer area averaging of the pictures" },
     [OPT_MAX_FRAMES] = { 0, "max-frames", "N",
                          "only so many times, the first ones (default: all, 300 of Neu3D)" },
@@ -180,7 +181,11 @@ static const ted4_command COMMAND = {
 
 /* Options that can be applied only after the preset. */
 typedef struct {
-    const char *preset, *lambda, *iterations, *capacity, *profile, *set[MAX_SETS];
+    const char *preset;
+    struct {
+        int option;
+        const char *value;
+    } set[MAX_SETS]; /* in their order */
     int n_sets;
     const char *of_scene; /* name of the first option given that --transcode does not know */
 } pending;
@@ -243,11 +248,17 @@ static int take_bounds(ted4_request *r, const char *value)
 
 static int take_profile(const char *value, ted4_train_options *o)
 {
-    if (value == NULL)
-        return TED4_REQUEST_GO;
     if (strcmp(value, "compact") != 0 && strcmp(value, "main") != 0)
         return bad_value(OPT_PROFILE, value, "main or compact");
     o->profile = strcmp(value, "compact") == 0 ? TED4_PROFILE_COMPACT : TED4_PROFILE_MAIN;
+    return TED4_REQUEST_GO;
+}
+
+static int take_capacity(const char *value, ted4_train_options *o)
+{
+    if (strcmp(value, "auto") != 0 && strcmp(value, "fixed") != 0)
+        return bad_value(OPT_CAPACITY, value, "auto or fixed");
+    o->capacity = strcmp(value, "auto") == 0;
     return TED4_REQUEST_GO;
 }
 
@@ -290,6 +301,16 @@ static int goes_with_transcode(int option)
     }
 }
 
+/* What changes the preset. */
+static int take_later(pending *p, int option, const char *value)
+{
+    if (p->n_sets == MAX_SETS)
+        return complain("too many --set");
+    p->set[p->n_sets].option = option;
+    p->set[p->n_sets++].value = value;
+    return TED4_REQUEST_GO;
+}
+
 static int take(ted4_request *r, pending *p, int option, const char *value)
 {
     int *const on = flag(r, option);
@@ -301,14 +322,10 @@ static int take(ted4_request *r, pending *p, int option, const char *value)
     switch (option) {
     case OPT_OUTPUT: r->out = value; break;
     case OPT_PRESET: p->preset = value; break;
-    case OPT_LAMBDA: p->lambda = value; break;
-    case OPT_ITERATIONS: p->iterations = value; break;
-    case OPT_CAPACITY: p->capacity = value; break;
     case OPT_CHECKPOINT: r->checkpoint = value; break;
     case OPT_STAGE1: r->stage1 = value; break;
     case OPT_LOG: r->log = value; break;
     case OPT_TRANSCODE: r->transcode = value; break;
-    case OPT_PROFILE: p->profile = value; break;
     case OPT_TITLE: return take_text(option, value, &r->title);
     case OPT_AUTHOR: return take_text(option, value, &r->author);
     case OPT_LICENCE: return take_text(option, value, &r->licence);
@@ -344,11 +361,11 @@ static int take(ted4_request *r, pending *p, int option, const char *value)
         r->target_size = (size_t)bytes;
         break;
     }
-    case OPT_SET:
-        if (p->n_sets == MAX_SETS)
-            return complain("too many --set");
-        p->set[p->n_sets++] = value;
-        break;
+    case OPT_LAMBDA:
+    case OPT_ITERATIONS:
+    case OPT_CAPACITY:
+    case OPT_PROFILE:
+    case OPT_SET: return take_later(p, option, value);
     }
     return TED4_REQUEST_GO;
 }
@@ -394,8 +411,21 @@ static int set_iterations(ted4_request *r, const char *text)
     return status != TED4_REQUEST_GO ? status : set(r, one);
 }
 
-/* Applies the preset first, then --profile, --iterations, --lambda and --capacity, then --set in
- * order. */
+/* --lambda, --iterations, --capacity, --profile or --set. */
+static int apply_one(ted4_request *r, int option, const char *value)
+{
+    char text[256];
+
+    switch (option) {
+    case OPT_LAMBDA: snprintf(text, sizeof text, "lambda=%s", value); return set(r, text);
+    case OPT_ITERATIONS: return set_iterations(r, value);
+    case OPT_CAPACITY: return take_capacity(value, &r->options);
+    case OPT_PROFILE: return take_profile(value, &r->options);
+    default: return set(r, value);
+    }
+}
+
+/* Applies the preset first, then what changes it, in the order of the command line. */
 static int apply(ted4_request *r, const pending *p)
 {
     const uint32_t seed = r->options.seed;
@@ -409,20 +439,8 @@ static int apply(ted4_request *r, const pending *p)
         return complain(text);
     }
     r->options.seed = seed;
-    status = take_profile(p->profile, &r->options);
-    if (p->iterations != NULL && status == TED4_REQUEST_GO)
-        status = set_iterations(r, p->iterations);
-    if (p->lambda != NULL && status == TED4_REQUEST_GO) {
-        snprintf(text, sizeof text, "lambda=%s", p->lambda);
-        status = set(r, text);
-    }
-    if (status == TED4_REQUEST_GO && p->capacity != NULL && strcmp(p->capacity, "auto") != 0 &&
-        strcmp(p->capacity, "fixed") != 0)
-        return bad_value(OPT_CAPACITY, p->capacity, "auto or fixed");
-    if (p->capacity != NULL)
-        r->options.capacity = strcmp(p->capacity, "auto") == 0;
     for (int i = 0; i < p->n_sets && status == TED4_REQUEST_GO; i++)
-        status = set(r, p->set[i]);
+        status = apply_one(r, p->set[i].option, p->set[i].value);
     return status;
 }
 

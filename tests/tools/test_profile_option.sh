@@ -1,8 +1,9 @@
 #!/bin/sh
-# test_profile_option.sh - ted4enc --profile: compact is the default, --set replaces it; a file of
-# profile Compact says so, lies on the grid of positions, and is the same where training was stopped
-# and went on; one of profile Main can be read by decoders of version 1.0. Prints lines as a cmocka
-# program does; run by `make test` from the project's root.
+# test_profile_option.sh - ted4enc --profile: compact is the default, and the last option that says
+# it holds, be it --set, as with --iterations, --lambda and --capacity; a file of profile Compact
+# says so, lies on the grid of positions, and is the same where training was stopped and went on;
+# one of profile Main can be read by decoders of version 1.0. Prints lines as a cmocka program does;
+# run by `make test` from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 export LC_ALL=C
@@ -29,6 +30,12 @@ train back    --profile compact --iterations 60,40 --set profile=0
 train main    --profile main --iterations 60,40
 same  compact_is_default plain compact
 same  set_wins main back
+train again   --set profile=0 --set stage2=9 --profile compact --iterations 60,40
+same  last_holds compact again
+"$TED4_BUILD/ted4enc" "$out/pop" -o "$out/last.ted4" $small --set lambda=0.5 --set capacity=1 \
+    --set stage2=9 --lambda 0.01 --capacity fixed --iterations 6,4 --json >"$out/last.json" \
+    2>"$out/last.said" || fail last "$(cat "$out/last.said")"
+check last_of_all "$out/last.json" '"lambda":0.01,' '"steps":10,'
 cmp -s "$out/main.ted4" "$out/compact.ted4" && fail differ "one file" || ok differ
 
 "$TED4_BUILD/ted4info" "$out/compact.ted4" --budget >"$out/budget" || fail info "$out/compact.ted4"
