@@ -67,10 +67,12 @@ typedef struct {
     double setup, train;
 } times;
 
-static void report(const ted4_request *r, const ted4_trainer *t, ted4_teller *teller,
-                   const ted4_coded *c, times s)
+static void report(const ted4_training *training, const ted4_coded *c, times s)
 {
+    const ted4_request *r = training->request;
+    const ted4_trainer *t = training->trainer;
     const ted4_verified *v = &c->verified;
+    const unsigned long long steps = t->iteration + training->again;
 
     if (r->json)
         printf("{\"bytes\":%zu,\"lambda\":%.7g,\"setup_s\":%.2f,\"train_s\":%.2f,\"steps\":%llu,"
@@ -78,14 +80,14 @@ static void report(const ted4_request *r, const ted4_trainer *t, ted4_teller *te
                "\"gaussians\":%zu,\"dynamic\":%u,\"estimated_bits\":%.0f,\"coded_bits\":%.0f,"
                "\"probe_with_time\":%.6f,\"probe_without\":%.6f,\"rollbacks\":%llu,\"peak_mib\":%."
                "0f,\"hash\":\"%s\"}\n",
-               c->size, c->lambda, s.setup, s.train, (unsigned long long)t->iteration,
-               1e3 * s.train / (double)(t->iteration > 0 ? t->iteration : 1), v->anchors,
-               v->gaussians, v->dynamic, v->estimated_bits, v->coded_bits, t->search.probe_loss[0],
+               c->size, c->lambda, s.setup, s.train, steps,
+               1e3 * s.train / (double)(steps > 0 ? steps : 1), v->anchors, v->gaussians,
+               v->dynamic, v->estimated_bits, v->coded_bits, t->search.probe_loss[0],
                t->search.probe_loss[1], (unsigned long long)t->monitor.state.rollbacks, peak_mib(),
                v->hash);
     else
         ted4_teller_say(
-            teller,
+            training->teller,
             "%s: %zu bytes, %u anchors (%u move), %zu Gaussians, trained in %.1f s, hash %s",
             r->out, c->size, v->anchors, v->dynamic, v->gaussians, s.train, v->hash);
 }
@@ -132,7 +134,7 @@ static int run(const encoder *e, ted4_trainer *t)
     bad = ted4_training_end(&training, bad) != 0;
     if (!bad) {
         say_exchange(e);
-        report(r, t, teller, &coded, (times) { start - e->begin, before + ted4_clock() - start });
+        report(&training, &coded, (times) { start - e->begin, before + ted4_clock() - start });
     }
 
     const int over = r->target_size > 0 && coded.size > r->target_size;

@@ -47,11 +47,14 @@ static double next_lambda(const bracket *b, double target, double lambda, double
 
 static int one_trial(ted4_training *t, const ted4_snapshot *start, double lambda, ted4_coded *c)
 {
+    const uint64_t end = t->trainer->iteration;
+
     t->trainer->opt.lambda = lambda;
     if (ted4_snapshot_restore(t->trainer, start) != 0) {
         snprintf(t->why, sizeof t->why, "%s", t->trainer->message.text);
         return -1;
     }
+    t->again += end - t->trainer->iteration;
     ted4_run_log_rewind(&t->log, t->trainer);
     ted4_training_rewound(t);
     if (ted4_training_go(t, 2) != 0 || ted4_training_code(t, c) != 0)

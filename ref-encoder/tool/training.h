@@ -23,6 +23,7 @@ typedef struct {
     ted4_growth growth;
     int estimated;  /* 1: the estimated duration of the run has been printed */
     int64_t saved;  /* the step that the checkpoint holds; negative: there is no checkpoint */
+    uint64_t again; /* steps that a search for a size has taken and gone back */
     int asked;      /* the signal that asks for the end, as all processes know it; 0: none */
     int stopped;    /* the signal that ended training; 0: none has */
     char why[1024]; /* filled by every function that fails */

@@ -107,14 +107,19 @@ static void test_met(void **state)
     target = (size[0] + size[1]) / 2;
     for (int i = 0; i < 2; i++) {
         snprintf(arguments, sizeof arguments,
-                 "-o target.ted4 --lambda %s --target-size %ld --stage1 s1", lambdas[i], target);
+                 "-o target.ted4 --lambda %s --target-size %ld --stage1 s1 --json >json",
+                 lambdas[i], target);
         if (encode(arguments) != 0)
             fail_msg("%ld bytes were not met", target);
 
-        const long made = size_of("target.ted4"), least = target * (trials() > 0 ? 98 : 85) / 100;
+        const int n = trials();
+        const long made = size_of("target.ted4"), least = target * (n > 0 ? 98 : 85) / 100;
 
         if (made > target || made < least)
             fail_msg("%ld bytes asked for, %ld made", target, made);
+        /* Time per step: the steps of all trials count, as their time does. */
+        snprintf(arguments, sizeof arguments, "\"steps\":%d,", 150 + 250 * (n > 0 ? n : 8));
+        assert_true(contains("json", arguments));
     }
 }
 
