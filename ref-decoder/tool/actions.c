@@ -81,6 +81,9 @@ int ted4_action_check(const ted4_session *s)
         code = check_centre(s);
     if (code == TED4_EXIT_FINE)
         code = check_up(s);
+    if (code == TED4_EXIT_FINE && n_files > 1 && ted4_output_is_stdout(set->output))
+        code = ted4_session_refused(
+            "-o -", "standard output takes one frame; --time or --frames says which");
     if (code == TED4_EXIT_FINE && n_files > 1 && ted4_pattern_count(set->output) == 0)
         code = ted4_session_refused(set->output, "several frames need a %d in the name");
     if (code == TED4_EXIT_FINE && n_pictures > 1 && ted4_pattern_count(set->render) == 0)

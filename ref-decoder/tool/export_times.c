@@ -73,9 +73,10 @@ static int export_time(ted4_session *s, const ted4_sampler *how, ted4_time t, ui
                  "colours fitted to a view-dependent head, rms error %.4f\n", sample.sh_rms);
     sample.frame.comment = comment;
     sample.frame.in_order = ted4_pattern_count(s->set->output) > 0;
-    if (ted4_pattern_make(path, s->set->output, number) != 0 ||
-        ted4_export(s->set->format, &sample.frame, path) != 0)
+    if (ted4_pattern_make(path, s->set->output, number) != 0)
         code = ted4_session_refused(s->set->output, strerror(errno));
+    else if (ted4_export(s->set->format, &sample.frame, path) != 0)
+        code = ted4_session_refused(path, strerror(errno));
     else if (s->set->json)
         ted4_session_append(s->report, "exports",
                             json_pack("{s:o, s:I, s:I, s:I, s:f}", "path", ted4_json_string(path),

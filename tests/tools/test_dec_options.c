@@ -102,6 +102,8 @@ static void test_usage(void **state)
           "bad value a.doc; expected a name that ends in .ply, .splat, .glb or" },
         { "v1.ted4 -o a%s.ply", "a%s.ply; expected at most one %d" },
         { "v1.ted4 -o a.ply", "several frames need a %d in the name" },
+        { "v1.ted4 -o -", "-o -: standard output takes one frame; --time or --frames says which" },
+        { "v1.ted4 -o missing/a%d.ply", "missing/a0.ply: No such file" },
         { "v1.ted4 --hash --frames 0:999", "--frames" },
         { "v1.ted4 --hash --frames 1 --time 0", "only one of them" },
         { "v1.ted4 --time 1.5", "--time: bad value 1.5; expected seconds, as 1.5s, or 0 to 1" },

@@ -102,7 +102,7 @@ cmp -s "$out/one.ply" "$out/two.ply" && ok stdout || fail stdout "differs"
 "$dec" "$vector" -o "$out/one.raw" --time 0 -q --keep-all
 "$dec" "$vector" -o - --format RAW --time 0 -q --keep-all >"$out/two.raw"
 cmp -s "$out/one.raw" "$out/two.raw" && ok stdout_raw || fail stdout_raw "differs"
-expect several 3 'several frames need' "$dec" "$vector" -o -
+expect several 3 'standard output takes one frame' "$dec" "$vector" -o -
 expect twice 3 'o -: goes without --json' "$dec" "$vector" -o - --time 0 --json
 expect format 3 'only with -o -' "$dec" "$vector" -o "$out/x.ply" --time 0 --format ply
 expect no_format 3 'bad value out; expected ply, splat' "$dec" "$vector" -o - --time 0 --format out
