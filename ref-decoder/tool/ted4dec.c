@@ -16,6 +16,7 @@
 #include "output.h"
 #include "settings.h"
 #include "sh.h"
+#include "turn.h"
 #include "views.h"
 
 enum {
@@ -222,17 +223,11 @@ static int set_bound(const char *name, const char *value, int64_t *out)
 
 static int set_up(ted4_settings *s, const char *value)
 {
-    const int negative = value[0] == '-';
-    const char *const axis = value + negative;
-
     s->auto_up = strcmp(value, "auto") == 0;
     memset(s->up, 0, sizeof s->up);
-    if (s->auto_up)
-        return 0;
-    if (axis[0] < 'x' || axis[0] > 'z' || axis[1] != '\0')
-        return bad_value("up", value, "x, y, z, -x, -y, -z or auto");
-    s->up[axis[0] - 'x'] = negative ? -1.0f : 1.0f;
-    return 0;
+    return s->auto_up || ted4_axis_parse(value, s->up) == 0
+               ? 0
+               : bad_value("up", value, "x, y, z, -x, -y, -z or auto");
 }
 
 static int set_time(ted4_settings *s, const char *value)

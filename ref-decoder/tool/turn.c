@@ -12,6 +12,18 @@ int ted4_has_direction(const float v[3])
     return v[0] != 0 || v[1] != 0 || v[2] != 0;
 }
 
+int ted4_axis_parse(const char *text, float up[3])
+{
+    const int negative = text[0] == '-';
+    const char *const axis = text + negative;
+
+    if (axis[0] < 'x' || axis[0] > 'z' || axis[1] != '\0')
+        return -1;
+    for (int k = 0; k < 3; k++)
+        up[k] = k != axis[0] - 'x' ? 0.0f : negative ? -1.0f : 1.0f;
+    return 0;
+}
+
 void ted4_turn_up(const float up[3], ted4_turn *t)
 {
     const double x = (double)up[0], y = (double)up[1], z = (double)up[2];

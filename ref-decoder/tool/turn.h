@@ -9,6 +9,9 @@
 /* Returns 1 if v is not 0 0 0, which stands for a direction that nobody has told. */
 int ted4_has_direction(const float v[3]);
 
+/* Reads the name of an axis: x, y, z, -x, -y or -z. Returns 0, or -1 if text is none. */
+int ted4_axis_parse(const char *text, float up[3]);
+
 /* A rotation of the world, twice: a point x goes to matrix x. */
 typedef struct {
     double matrix[9]; /* row by row */

@@ -48,7 +48,9 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
     [OPT_CAMERAS] = { 0, "cameras", "FILE.json",
                       "cameras that took the pictures, as for ted4dec --camera" },
     [OPT_PATH] = { 0, "path", "FILE.json", "path of a player's camera, in the same form" },
-    [OPT_UP] = { 0, "up", "X,Y,Z", "the direction that is up in the scene, as in 0,0,1" },
+    [OPT_UP] = { 0, "up", "X,Y,Z",
+                 "the direction that is up in the scene, as in 0,0,1, or an axis, as for ted4dec "
+                 "--up" },
     [OPT_THUMBNAIL] = { 0, "thumbnail", "FILE.png", "a picture of at most 1024 x 1024 pixels" },
     [OPT_STRIP] = { 0, "strip", "TYPE",
                     "first remove chunks META, CAMS, THMB, another ancillary type, or all" },
@@ -164,8 +166,9 @@ static int take(settings *s, int option, const char *value)
     case OPT_CAMERAS: s->cameras = value; break;
     case OPT_PATH: s->path = value; break;
     case OPT_UP:
-        if (ted4_arguments_floats(value, 3, s->up) != 0 || normalise(s->up) != 0)
-            return failed("--up", "expected a direction X,Y,Z");
+        if (ted4_axis_parse(value, s->up) != 0 &&
+            (ted4_arguments_floats(value, 3, s->up) != 0 || normalise(s->up) != 0))
+            return failed("--up", "expected an axis, as z, or a direction X,Y,Z");
         s->has_up = 1;
         break;
     case OPT_THUMBNAIL: s->thumbnail = value; break;

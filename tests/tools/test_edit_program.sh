@@ -37,6 +37,8 @@ edit "$out/all.ted4" -o "$out/bare.ted4" --strip all
 cmp -s "$out/plain.ted4" "$out/bare.ted4" && ok stripped || fail stripped differ
 edit "$out/all.ted4" -o "$out/some.ted4" --strip THMB --title 'Another' --author '' --up 0,-2,0
 equal replaced "$(info some | grep -c '^title=Another$\|^author=\|THMB\|5 cameras, up 0 -1 0$')" 2
+edit "$out/some.ted4" -o "$out/axis.ted4" --up -x
+equal up_axis "$(info axis | grep -c '5 cameras, up -1 0 0$')" 1
 equal edited_scene "$(hash_of some)" "$(hash_of plain)"
 cat >"$out/path.json" <<END
 [{"width":32,"height":24,"fx":30,"fy":30,"cx":16,"cy":12,"R":[1,0,0,0,1,0,0,0,1],"t":[0,0,4],
@@ -95,7 +97,7 @@ expect strip_nothing 0 "ted4edit: note: $out/all.ted4: no chunk to strip: meta" 
     "$TED4_BUILD/ted4edit" "$out/all.ted4" -o "$out/kept.ted4" --strip meta
 expect strip_none 0 "ted4edit: note: $out/plain.ted4: no chunk to strip" \
     "$TED4_BUILD/ted4edit" "$out/plain.ted4" -o "$out/kept.ted4" -f --strip all
-refuse no_direction 'ted4edit: --up: expected a direction X,Y,Z' --up 0,0,0
+refuse no_direction 'ted4edit: --up: expected an axis, as z, or a direction X,Y,Z' --up 0,0,0
 refuse no_png "ted4edit: $out/path.json: expected a PNG file of at most 1024 x 1024 pixels" \
     --thumbnail "$out/path.json"
 refuse no_list 'ted4edit: ' --cameras "$out/view0.png"
