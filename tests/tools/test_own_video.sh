@@ -90,6 +90,12 @@ refuse rate 3 "FPS=fast: expected frames per second" env FPS=fast sh tools/own-v
 if [ -e "$out/s" ]; then fail nothing_made "$out/s"; else ok nothing_made; fi
 expect no_video 3 "ffmpeg -i failed: the end of $out/s/log says why" sh tools/own-video.sh \
     "$out/s" "$out/text.mp4"
+# Names that look like options, or like protocols of ffmpeg.
+mkdir "$out/odd" "$out/odd/-s"
+cp "$out/text.mp4" "$out/odd/12:30.mp4"
+expect odd_names 3 "ffmpeg -i failed: the end of ./-s/log says why" sh -c \
+    'script=$PWD/tools/own-video.sh && cd "$0" && sh "$script" -s 12:30.mp4' "$out/odd"
+check odd_read "$out/odd/-s/log" 'Invalid data'
 
 # Footage: 12 positions on an arc, half a second each; five of them also as clips of half a second.
 film() { ffmpeg -v error -framerate "$1" -i "$2" -c:v libx264 -threads 1 -crf 14 -pix_fmt yuv420p \
