@@ -55,7 +55,7 @@ class _Gaussians(c.Structure):
 
 
 def _load():
-    library = c.CDLL(os.environ.get("TED4_LIBRARY", "libted4dec.so.1"))
+    library = c.CDLL(os.environ.get("TED4_LIBRARY") or "libted4dec.so.1")
     for name in ("id", "section", "text"):
         getattr(library, f"ted4_status_{name}").restype = c.c_char_p
     library.ted4_verdict_name.restype = c.c_char_p
@@ -118,7 +118,7 @@ class Scene:
         self._scene, self._recon = c.c_void_p(), c.c_void_p()
         self._lock = threading.Lock()  # of _recon and its arrays, which the next query overwrites
         self._options = _Options(max_bytes=max_bytes, max_work=max_work)
-        error, data = _Error(), bytes(data)
+        error, data = _Error(), bytes(memoryview(data))
         if _library.ted4_decode(data, c.c_size_t(len(data)), c.byref(self._options),
                                 c.byref(self._scene), c.byref(error)):
             raise Ted4Error(error.code, error.offset)
@@ -173,6 +173,7 @@ class Scene:
 
     def frame(self, number, camera=(0.0, 0.0, 0.0)):
         """The Gaussians of a frame, from 0 to frames - 1 (R-HDR-005)."""
+        number = operator.index(number)
         if not 0 <= number < self.frames:
             raise IndexError(f"frame {number} of {self.frames}")
         time = Fraction(number, max(self.frames - 1, 1))

@@ -225,12 +225,16 @@ for num, den in ((2**32, 5), (3, 2**32 + 5), (-1, 5), (6, 5), (0, 0), (1, 2**24)
 for wrong, what in ((lambda: scene.gaussians(0.5, 1), TypeError),
                     (lambda: scene.frame(0, (1, 2)), ValueError),
                     (lambda: ted4.Scene.open(path, max_bytes=-1), ValueError),
+                    (lambda: ted4.Scene(5), "bytes-like"),
+                    (lambda: ted4.Scene(path), "bytes-like"),
+                    (lambda: scene.frame(0.5), "integer"),
                     (lambda: copy.copy(scene), TypeError)):
     try:
         wrong()
         raise AssertionError(what)
-    except what:
-        pass
+    except what if isinstance(what, type) else TypeError as e:
+        assert isinstance(what, type) or what in str(e), str(e)
+assert ted4.Scene(memoryview(open(path, "rb").read())).hash == wanted
 # Threads that share a scene get the Gaussians of the times that they ask for.
 hashes, wrong = [scene.frame(j).hash for j in range(scene.frames)], []
 def ask(j):
@@ -258,6 +262,8 @@ for j, num in ((29, 14), (11, 6), (2**25 - 2, last)):
     assert scene.frame(j).hash == scene.gaussians(num, last).hash, j
 PYTHON
     then ok python; else fail python "$(cat "$out/said")"; fi
+    expect python_library 0 loaded env TED4_LIBRARY= LD_LIBRARY_PATH="$(dirname "$shared")" \
+        "$python" -c 'import ted4; print("loaded")'
 else
     skip python "there is no numpy"
 fi
