@@ -23,7 +23,10 @@ static unsigned char *read_file(int argc, char **argv, size_t *size)
         *size += fread(data + *size, 1, room - *size, f);
     }
     if (data == NULL || ferror(f)) {
-        fprintf(stderr, "usage: %s FILE.ted4\n", argv[0]);
+        if (argc == 2)
+            perror(argv[1]);
+        else
+            fprintf(stderr, "usage: %s FILE.ted4\n", argv[0]);
         exit(3);
     }
     fclose(f);

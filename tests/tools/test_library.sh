@@ -97,6 +97,7 @@ if has pkg-config; then
     done
     expect memory 0 "$hash" "$out/memory" "$vector"
     expect refused 1 "con.magic at byte 0: " "$out/memory" README.md
+    expect absent 3 "$out/absent: No such file or directory" "$out/memory" "$out/absent"
     expect allocator 0 " blocks held, 0 after ted4_scene_free" "$out/allocator" "$vector"
     expect attributes 0 "frame 0: " "$out/attributes" "$vector"
     frames=$("$TED4_BUILD/ted4info" "$vector" |
