@@ -122,12 +122,13 @@ static const ted4_argument run_table[RUN_OPTIONS] = {
     [RUN_VERSION] = TED4_ARGUMENT_VERSION,
 };
 
-static int64_t number(const char *text, int64_t high)
+/* name: of the option. Ends the program if the text is no such number. */
+static int64_t number(const char *name, const char *text, int64_t low, int64_t high)
 {
     int64_t n;
 
-    if (ted4_arguments_number(text, 0, high, &n) != 0)
-        exit(usage("no number, or out of range"));
+    if (ted4_arguments_number(text, low, high, &n) != 0)
+        exit(ted4_arguments_bad_number("ted4conf", name, text, low, high));
     return n;
 }
 
@@ -154,9 +155,9 @@ static int run(int argc, char **argv)
         case RUN_SUITE: o.suite = value; break;
         case RUN_DECODER: o.decoder = value; break;
         case RUN_LIST: o.list = value; break;
-        case RUN_JOBS: o.jobs = (int)number(value, 200); break;
-        case RUN_TIMEOUT: o.timeout = (double)number(value, 86400); break;
-        case RUN_MEMORY: o.memory = (uint64_t)number(value, 1 << 24) << 20; break;
+        case RUN_JOBS: o.jobs = (int)number("jobs", value, 1, 200); break;
+        case RUN_TIMEOUT: o.timeout = (double)number("timeout", value, 0, 86400); break;
+        case RUN_MEMORY: o.memory = (uint64_t)number("memory", value, 0, 1 << 24) << 20; break;
         case RUN_ONCE: o.once = 1; break;
         case RUN_SECOND: o.second = value; break;
         case RUN_DEMAND: o.demand = 1; break;
@@ -166,7 +167,7 @@ static int run(int argc, char **argv)
         case RUN_HTML: o.html = value; break;
         default: o.quiet = 1;
         }
-    if (o.decoder == NULL || optind < argc || o.jobs < 1)
+    if (o.decoder == NULL || optind < argc)
         return usage("run takes --decoder and no operand");
     return conf_run(&o);
 }
@@ -204,7 +205,7 @@ static int encode(int argc, char **argv)
         case TED4_ARGUMENTS_DONE: return 0;
         case ENCODE_ENCODER: o.encoder = value; break;
         case ENCODE_PRESET: o.preset = value; break;
-        default: o.timeout = (double)number(value, 86400);
+        default: o.timeout = (double)number("timeout", value, 0, 86400);
         }
     if (o.encoder == NULL || optind + 1 != argc)
         return usage("encode takes --encoder and one scene");
@@ -309,7 +310,7 @@ static int replay(int argc, char **argv)
         case REPLAY_STOP: o.stop = 1; break;
         case REPLAY_NAMES: o.names = 1; break;
         case REPLAY_WAYS: o.ways = 1; break;
-        case REPLAY_THREADS: o.threads = (int)number(value, TED4_MAX_THREADS); break;
+        case REPLAY_THREADS: o.threads = (int)number("threads", value, 0, TED4_MAX_THREADS); break;
         default: o.validate = 1;
         }
     return optind < argc ? usage("replay takes no operand") : conf_replay(&o);
@@ -391,11 +392,11 @@ static int mutants(int argc, char **argv)
             break;
         case MUTANTS_LIBRARIES: o.libraries = value; break;
         case MUTANTS_ONLY: o.only = value; break;
-        case MUTANTS_JOBS: o.jobs = (int)number(value, 64); break;
+        case MUTANTS_JOBS: o.jobs = (int)number("jobs", value, 1, 64); break;
         case MUTANTS_CHECK: o.check = 1; break;
-        default: o.timeout = (double)number(value, 86400);
+        default: o.timeout = (double)number("timeout", value, 0, 86400);
         }
-    return optind < argc || o.jobs < 1 ? usage("mutants takes no operand") : conf_mutants(&o);
+    return optind < argc ? usage("mutants takes no operand") : conf_mutants(&o);
 }
 
 static const struct {

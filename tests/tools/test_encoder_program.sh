@@ -19,6 +19,10 @@ for scene in pop still; do
     expect "conforms_$scene" 0 ': conforms' "$TED4_BUILD/ted4conf" encode \
         -e "'$TED4_BUILD/ted4enc' $short" --preset draft "$out/$scene"
 done
+expect bad_jobs 3 'ted4conf: --jobs: bad value 0; expected a whole number from 1 to 200' \
+    "$TED4_BUILD/ted4conf" run -d false -j 0
+expect bad_timeout 3 'ted4conf: --timeout: bad value 1s; expected a whole number from 0 to 86400' \
+    "$TED4_BUILD/ted4conf" run -d false -t 1s
 expect no_scene 1 'no answer' "$TED4_BUILD/ted4conf" encode -e "'$TED4_BUILD/ted4enc'" "$out/absent"
 
 # A file and its answer for the bad encoders. WASTE: a vector that is valid but codes something
