@@ -135,6 +135,17 @@ int ted4_output_close(ted4_output *o)
     return -1;
 }
 
+int ted4_output_keep(ted4_output *o)
+{
+    const int n = fflush(o->file) == 0 ? fsync(fileno(o->file)) : 0;
+
+    /* Some file systems cannot do it. What fflush met is kept for ted4_output_close. */
+    if (n == 0 || errno == EINVAL || errno == ENOTSUP || errno == EROFS)
+        return ted4_output_close(o);
+    ted4_output_cancel(o);
+    return -1;
+}
+
 int ted4_output_is_stdout(const char *path)
 {
     return strcmp(path, "-") == 0;

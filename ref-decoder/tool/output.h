@@ -25,6 +25,10 @@ int ted4_output_open(ted4_output *o, const char *path);
 /* Flushes and closes the temporary file and gives it its name, replacing an existing file but not
  * a link to it. Returns 0, or -1 with errno set and the temporary file removed. */
 int ted4_output_close(ted4_output *o);
+/* As ted4_output_close, but the bytes lie on the medium before the file has its name: after a
+ * failure of power the file is the one that was there or the new one. For what takes long to make;
+ * a series of pictures would wait for each. */
+int ted4_output_keep(ted4_output *o);
 /* Closes and removes the temporary file. errno is preserved. */
 void ted4_output_cancel(ted4_output *o);
 

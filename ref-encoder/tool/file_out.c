@@ -46,7 +46,7 @@ int ted4_file_write(const char *path, const void *data, size_t size, char *why, 
 
     if (!bad) {
         fwrite(data, 1, size, o.file);
-        bad = ted4_output_close(&o) != 0;
+        bad = ted4_output_keep(&o) != 0;
     }
     if (bad)
         snprintf(why, why_size, "%s: %s", path, strerror(errno));

@@ -154,7 +154,7 @@ static int write_state(ted4_training *t, const char *path)
         ted4_output_cancel(&o);
         return fail(t);
     }
-    bad = bad || ted4_output_close(&o) != 0;
+    bad = bad || ted4_output_keep(&o) != 0;
     if (bad)
         snprintf(t->why, sizeof t->why, "%s: %s", path, strerror(errno));
     return bad ? -1 : 0;

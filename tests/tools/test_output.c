@@ -58,6 +58,58 @@ static void test_no_file(void **state)
     assert_int_equal(rmdir(path), 0);
 }
 
+/* fsync of the system, which fails with this number unless it is 0. */
+static int sync_fails, synced;
+
+int __wrap_fsync(int file);
+
+int __wrap_fsync(int file)
+{
+    synced += file > 2;
+    errno = sync_fails;
+    return sync_fails != 0 ? -1 : 0;
+}
+
+/* Keeps a file of some letters at path, where fsync fails with error. Returns what
+ * ted4_output_keep returns, with its errno. */
+static int keep(const char *path, int error)
+{
+    ted4_output o;
+
+    sync_fails = error;
+    synced = 0;
+    assert_int_equal(ted4_output_open(&o, path), 0);
+    assert_true(fputs("new", o.file) > 0);
+    return ted4_output_keep(&o);
+}
+
+/* A file that is kept is on the medium before it has its name; where the file system cannot say so,
+ * it is kept all the same, and where the medium fails, what was there stays. */
+static void test_keep(void **state)
+{
+    char path[256], text[16] = "";
+    ted4_output o;
+    FILE *f;
+
+    (void)state;
+    snprintf(path, sizeof path, "%s/x.ted4", folder);
+    assert_int_equal(ted4_output_open(&o, path), 0);
+    assert_true(fputs("old", o.file) > 0);
+    assert_int_equal(ted4_output_close(&o), 0);
+    assert_int_equal(synced, 0);
+    assert_int_equal(keep(path, EIO), -1);
+    assert_int_equal(errno, EIO);
+    f = fopen(path, "r");
+    assert_non_null(f);
+    assert_non_null(fgets(text, sizeof text, f));
+    fclose(f);
+    assert_string_equal(text, "old");
+    assert_int_equal(keep(path, EINVAL), 0);
+    assert_int_equal(keep(path, 0), 0);
+    assert_int_equal(synced, 1);
+    assert_int_equal(remove(path), 0);
+}
+
 static int folder_make(void **state)
 {
     (void)state;
@@ -74,7 +126,8 @@ static int folder_remove(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = { cmocka_unit_test(test_name_taken),
-                                        cmocka_unit_test(test_no_file) };
+                                        cmocka_unit_test(test_no_file),
+                                        cmocka_unit_test(test_keep) };
 
     return cmocka_run_group_tests(tests, folder_make, folder_remove);
 }
