@@ -39,11 +39,15 @@ static int leads(const ted4_exchange *x)
     return x == NULL || x->rank == 0;
 }
 
-/* Says why this process ends. If the others do not end for the same reason, ends them, too. */
+/* Says why this process ends, with --json also as an object; --check prints one of its own. If the
+ * others do not end for the same reason, ends them, too. */
 static int complain(const encoder *e, const char *text)
 {
+    const ted4_request *r = e->request;
     ted4_exchange *x = e->exchange;
 
+    if (!r->check)
+        ted4_check_report(NULL, &r->options, text, r->json);
     if (x != NULL && x->n > 1 && !x->meet(x->user)) {
         ted4_teller_error(e->teller, "rank %zu of %zu: %s", x->rank, x->n, text);
         x->end(x->user, TED4_EXIT_TOOL);

@@ -30,6 +30,23 @@ expect check_json_missing 3 "$out/none: no such folder" "$enc" "$out/none" --che
 "$enc" "$out/none" --check --json 2>/dev/null >"$out/json"
 check check_json_error "$out/json" "{\"error\":\"$out/none: no such folder"
 
+# So is what ends a training, or --transcode, before there is a file: one object, whose text is that
+# of the message. Wrong usage is none.
+# ended NAME TEXT ARGUMENT...
+ended() {
+    name=$1 text=$2; shift 2
+    "$enc" "$@" --json -q 2>"$out/err" >"$out/json"
+    equal "$name" "$? $(cat "$out/json")" "3 {\"error\":\"$text\"}"
+    equal "$name.told" "$(cat "$out/err")" "ted4enc: $text"
+}
+ended json_no_scene "$out/none: no such folder, expected a scene" "$out/none" -o "$out/x.ted4"
+: >"$out/there.ted4"
+ended json_there "$out/there.ted4: exists; -f overwrites" "$out/scene" -o "$out/there.ted4"
+ended json_transcode "$out/there.ted4: exists; -f overwrites" --transcode \
+    conformance/vectors/worked/WRK-annex-b2.ted4 -o "$out/there.ted4"
+"$enc" --json >"$out/json" 2>/dev/null
+equal json_usage "$? $(cat "$out/json")" "3 "
+
 # With something wrong, that alone.
 mkdir "$out/broken"
 cp -R "$out/scene/." "$out/broken"
