@@ -444,6 +444,13 @@ static int apply(ted4_request *r, const pending *p)
     return status;
 }
 
+/* Refuses an option that would be without effect: whoever wrote it expects something of it. */
+static int lonely(const char *option, const char *why)
+{
+    fprintf(stderr, "ted4enc: %s: %s (see --help)\n", option, why);
+    return TED4_REQUEST_BAD;
+}
+
 /* Checks that what was given goes together. */
 static int check(const ted4_request *r, const pending *p)
 {
@@ -457,8 +464,11 @@ static int check(const ted4_request *r, const pending *p)
         return complain("-o FILE.ted4 expected");
     if (r->out != NULL && !ted4_has_suffix(r->out, ".ted4"))
         return bad_output(r->out);
-    return r->resume && r->checkpoint == NULL ? complain("--resume needs --checkpoint FILE")
-                                              : TED4_REQUEST_GO;
+    if (r->resume && r->checkpoint == NULL)
+        return lonely("--resume", "only with --checkpoint");
+    if (r->checkpoint_every >= 0 && r->checkpoint == NULL)
+        return lonely("--checkpoint-every", "only with --checkpoint");
+    return TED4_REQUEST_GO;
 }
 
 int ted4_request_parse(ted4_request *r, int argc, char **argv)
@@ -472,7 +482,7 @@ int ted4_request_parse(ted4_request *r, int argc, char **argv)
     memset(r, 0, sizeof *r);
     r->downscale = 1;
     r->cache_mib = DEFAULT_CACHE;
-    r->checkpoint_every = DEFAULT_EVERY;
+    r->checkpoint_every = -1; /* not given */
     while ((option = ted4_arguments_next(&COMMAND, argc, argv, &value)) >= 0) {
         const int status = take(r, &p, option, value);
 
@@ -488,5 +498,7 @@ int ted4_request_parse(ted4_request *r, int argc, char **argv)
 
     const int status = check(r, &p);
 
+    if (r->checkpoint_every < 0)
+        r->checkpoint_every = DEFAULT_EVERY;
     return status == TED4_REQUEST_GO ? apply(r, &p) : status;
 }

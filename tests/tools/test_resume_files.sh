@@ -1,7 +1,8 @@
 #!/bin/sh
 # test_resume_files.sh - ted4enc does not write over a checkpoint or a log unless it goes on from
-# there or is told to, and refuses two outputs of one name, before it trains. Prints lines as a
-# cmocka program does; run by `make test` from the project's root.
+# there or is told to, and refuses two outputs of one name, and options without the one that they
+# belong to, before it trains. Prints lines as a cmocka program does; run by `make test` from the
+# project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 export LC_ALL=C
@@ -38,5 +39,12 @@ expect same_link 3 'ted4enc: --log and --checkpoint: both are link' \
     enc -o w.ted4 --checkpoint c --log link -f
 expect same_late 3 'ted4enc: --log and --stage1: both are n' \
     enc -o w.ted4 --log n --stage1 "../$(basename "$out")/n"
+
+# Options that would have no effect.
+expect lonely_every 3 'ted4enc: --checkpoint-every: only with --checkpoint (see --help)' \
+    enc -o w.ted4 --checkpoint-every 60
+expect lonely_resume 3 'ted4enc: --resume: only with --checkpoint (see --help)' \
+    enc -o w.ted4 --resume
+expect every 0 'v.ted4: ' enc -o v.ted4 --checkpoint v --checkpoint-every 60
 [ -e w.ted4 ] || [ -e t ] || [ -e n ] && fail nothing "$(ls)" || ok nothing
 exit $bad
