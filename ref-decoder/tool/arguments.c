@@ -181,6 +181,17 @@ int ted4_arguments_bad(const char *program, const char *name, const char *value,
     return TED4_EXIT_TOOL;
 }
 
+int ted4_arguments_bad_dash(const char *program, const char *name, const char *value,
+                            const char *what)
+{
+    char expected[100];
+
+    if (strcmp(value, "-") != 0)
+        return 0;
+    snprintf(expected, sizeof expected, "a %s name (./- names such a %s)", what, what);
+    return ted4_arguments_bad(program, name, value, expected);
+}
+
 int ted4_arguments_bad_number(const char *program, const char *name, const char *value, int64_t low,
                               int64_t high)
 {

@@ -301,6 +301,15 @@ static int goes_with_transcode(int option)
     }
 }
 
+/* The name of a file to write. */
+static int take_file(int option, const char *value, const char **to)
+{
+    *to = value;
+    return ted4_arguments_bad_dash("ted4enc", OPTIONS[option].name, value, "file") == 0
+               ? TED4_REQUEST_GO
+               : TED4_REQUEST_BAD;
+}
+
 /* What changes the preset. */
 static int take_later(pending *p, int option, const char *value)
 {
@@ -322,9 +331,9 @@ static int take(ted4_request *r, pending *p, int option, const char *value)
     switch (option) {
     case OPT_OUTPUT: r->out = value; break;
     case OPT_PRESET: p->preset = value; break;
-    case OPT_CHECKPOINT: r->checkpoint = value; break;
-    case OPT_STAGE1: r->stage1 = value; break;
-    case OPT_LOG: r->log = value; break;
+    case OPT_CHECKPOINT: return take_file(option, value, &r->checkpoint);
+    case OPT_STAGE1: return take_file(option, value, &r->stage1);
+    case OPT_LOG: return take_file(option, value, &r->log);
     case OPT_TRANSCODE: r->transcode = value; break;
     case OPT_TITLE: return take_text(option, value, &r->title);
     case OPT_AUTHOR: return take_text(option, value, &r->author);

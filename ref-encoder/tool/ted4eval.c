@@ -174,7 +174,9 @@ static int set_option(settings *s, int option, const char *value)
             return failed("--hold-out", "too many");
         s->hold_out[s->n_hold_out++] = value;
         return 0;
-    case OPT_IMAGES: s->images = value; return 0;
+    case OPT_IMAGES:
+        s->images = value;
+        return ted4_arguments_bad_dash("ted4eval", "images", value, "folder");
     case OPT_SHEET: s->sheet = value; return 0;
     case OPT_THREADS: return set_number("threads", value, 0, TED4_MAX_THREADS, &s->threads);
     default: break;

@@ -149,6 +149,17 @@ equal ended_render "$(ls -A "$out/ended" | grep -v '^x\.png$')" ""
 long=$(awk 'BEGIN { for (i = 0; i < 4200; i++) printf "n" }')
 expect long_export 3 "File name too long" "$bin/ted4dec" "$out/a.ted4" -o "$long%d.ply" -f -q
 
+# ---- "-", which is no standard output here ----
+at() { (cd "$out/at" && "$@"); }
+expect dash_images 3 \
+    "ted4eval: --images: bad value -; expected a folder name (./- names such a folder)" \
+    at "$bin/ted4eval" "$out/a.ted4" "$scene" --images -
+expect dash_sheet 3 "ted4eval: -: --sheet writes .png only" \
+    at "$bin/ted4eval" "$out/a.ted4" "$scene" --sheet -
+expect dash_edit 3 "expected a file name that ends in .ted4" at "$bin/ted4edit" \
+    "$out/a.ted4" -o -
+equal dash "$(ls -A "$out/at")" ""
+
 # ---- standard output ----
 if [ -e /dev/full ]; then
     for p in ted4enc ted4dec ted4info ted4edit ted4eval ted4scene ted4conf ted4tolerance; do

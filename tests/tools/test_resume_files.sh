@@ -1,8 +1,8 @@
 #!/bin/sh
 # test_resume_files.sh - ted4enc does not write over a checkpoint or a log unless it goes on from
-# there or is told to, and refuses two outputs of one name, and options without the one that they
-# belong to, before it trains. Prints lines as a cmocka program does; run by `make test` from the
-# project's root.
+# there or is told to, and refuses, before it trains, two outputs of one name, options without the
+# one that they belong to, and "-" for a file. Prints lines as a cmocka program does; run by `make
+# test` from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 export LC_ALL=C
@@ -45,6 +45,12 @@ expect lonely_every 3 'ted4enc: --checkpoint-every: only with --checkpoint (see 
     enc -o w.ted4 --checkpoint-every 60
 expect lonely_resume 3 'ted4enc: --resume: only with --checkpoint (see --help)' \
     enc -o w.ted4 --resume
+# Standard output takes none of these files.
+for o in checkpoint stage1 log; do
+    expect dash_$o 3 "ted4enc: --$o: bad value -; expected a file name (./- names such a file)" \
+        enc -o w.ted4 --$o -
+done
+expect dash_out 3 'ted4enc: -o -: expected a file name that ends in .ted4' enc -o -
 expect every 0 'v.ted4: ' enc -o v.ted4 --checkpoint v --checkpoint-every 60
-[ -e w.ted4 ] || [ -e t ] || [ -e n ] && fail nothing "$(ls)" || ok nothing
+[ -e w.ted4 ] || [ -e - ] || [ -e t ] || [ -e n ] && fail nothing "$(ls)" || ok nothing
 exit $bad
