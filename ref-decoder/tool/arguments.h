@@ -62,13 +62,13 @@ int ted4_arguments_floats(const char *text, int n, float *out);
  * wrong usage (cli.h). */
 int ted4_arguments_bad(const char *program, const char *name, const char *value,
                        const char *expected);
-/* The same, if value is "-": elsewhere that is standard output, and here it would be the name of a
- * file. what: "file" or "folder". Returns 0 if it is another value. */
-int ted4_arguments_bad_dash(const char *program, const char *name, const char *value,
-                            const char *what);
 /* Does the same for a value that must be an integer within [low, high]; INT64_MAX: no upper
  * bound. */
 int ted4_arguments_bad_number(const char *program, const char *name, const char *value, int64_t low,
                               int64_t high);
+/* The same for the name of a file to write, if it is "-": elsewhere that is standard
+ * output. what: "file" or "folder". Returns 0 if it is another name. */
+int ted4_arguments_bad_dash(const char *program, const char *name, const char *value,
+                            const char *what);
 
 #endif

@@ -17,12 +17,22 @@ void ted4_cli_begin(void)
 #endif
 }
 
+/* Why standard output took no more; 0: not known. */
+static int reason;
+
+void ted4_cli_lost(int why)
+{
+    reason = why;
+}
+
 int ted4_cli_end(const char *program, int code)
 {
     errno = 0;
     if (fflush(stdout) == 0 && !ferror(stdout))
         return code;
-    fprintf(stderr, "%s: standard output: %s\n", program, strerror(errno != 0 ? errno : EIO));
+    if (reason == 0)
+        reason = errno != 0 ? errno : EIO;
+    fprintf(stderr, "%s: standard output: %s\n", program, strerror(reason));
     return TED4_EXIT_TOOL;
 }
 

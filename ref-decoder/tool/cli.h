@@ -18,6 +18,9 @@ enum { TED4_EXIT_FINE = 0, TED4_EXIT_REFUSED = 1, TED4_EXIT_WARNED = 2, TED4_EXI
  * that reaches the limit of file sizes (ulimit -f) is an error of output, as on a full disk, for
  * this process and its children; by itself, the system would end the process. */
 void ted4_cli_begin(void);
+/* Called where standard output takes no more, with the errno of that, which is gone by the end:
+ * ted4_cli_end says so. */
+void ted4_cli_lost(int why);
 /* Called when everything has been printed. Returns code; or TED4_EXIT_TOOL, after a message, if
  * standard output could not take it all. */
 int ted4_cli_end(const char *program, int code);

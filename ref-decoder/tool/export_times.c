@@ -53,6 +53,17 @@ static void say_axes(const ted4_session *s, char *text, size_t n, size_t size)
                  "world axes: right-handed, of the scene: which way is up is not known\n");
 }
 
+/* Writes a file, or standard output. Returns the exit code. */
+static int write_export(const ted4_session *s, const ted4_frame *frame, const char *path)
+{
+    if (ted4_export(s->set->format, frame, path) == 0)
+        return TED4_EXIT_FINE;
+    if (!ted4_output_is_stdout(path) || !ferror(stdout))
+        return ted4_session_refused(path, strerror(errno));
+    ted4_cli_lost(errno);
+    return TED4_EXIT_TOOL;
+}
+
 /* Writes one time. *worst_rms becomes at least the error of this fit. */
 static int export_time(ted4_session *s, const ted4_sampler *how, ted4_time t, uint32_t number,
                        double *worst_rms)
@@ -75,9 +86,9 @@ static int export_time(ted4_session *s, const ted4_sampler *how, ted4_time t, ui
     sample.frame.in_order = ted4_pattern_count(s->set->output) > 0;
     if (ted4_pattern_make(path, s->set->output, number) != 0)
         code = ted4_session_refused(s->set->output, strerror(errno));
-    else if (ted4_export(s->set->format, &sample.frame, path) != 0)
-        code = ted4_session_refused(path, strerror(errno));
-    else if (s->set->json)
+    else
+        code = write_export(s, &sample.frame, path);
+    if (code == TED4_EXIT_FINE && s->set->json)
         ted4_session_append(s->report, "exports",
                             json_pack("{s:o, s:I, s:I, s:I, s:f}", "path", ted4_json_string(path),
                                       "num", (json_int_t)t.num, "den", (json_int_t)t.den,

@@ -170,6 +170,12 @@ if [ -e /dev/full ]; then
                 "3 $p: standard output: No space left on device"
         done
     done
+    for f in ply splat glb raw; do
+        "$bin/ted4dec" "$out/a.ted4" -o - --format $f --time 0.5 -q >/dev/full 2>"$out/err"
+        status=$?
+        equal "stdout_$f" "$status $(cat "$out/err")" \
+            "3 ted4dec: standard output: No space left on device"
+    done
 else
     skip stdout "there is no /dev/full"
 fi
