@@ -145,7 +145,7 @@ $B/tests/tools/test_install $B/tests/tools/test_library: | $(PROGS) $(SHARED) $B
         $B/ted4tolerance man
 $B/tests/tools/test_look: $(ENC_TOOL:%.c=$B/%.o)
 $B/tests/tools/test_output: override LDFLAGS += -Wl,--wrap=fsync
-$B/tests/tools/test_outputs: | $B/ted4conf $B/ted4tolerance
+$B/tests/tools/test_kernels $B/tests/tools/test_outputs: | $B/ted4conf $B/ted4tolerance
 $B/tests/tools/test_stop: $B/ref-encoder/tool/stop.o
 $B/tests/tools/test_verify: $B/ref-encoder/tool/verify.o
 $(addprefix $B/tests/encoder/test_starved_,trainer writer): override LDFLAGS += \

@@ -36,19 +36,6 @@ static void make_getopt(const ted4_command *c, struct option *longs, char *lette
     *p = '\0';
 }
 
-static int answer(const ted4_command *c, int i)
-{
-    if (c->table[i].letter == 'h')
-        ted4_arguments_help(c, stdout);
-    else if (c->table[i].letter == 'V')
-        printf("%s " TED4_VERSION " (specification " TED4_SPEC_VERSION "), kernels %s\n",
-               c->program, ted4_level_name(ted4_level_wanted()));
-    else
-        return i;
-    return ted4_cli_end(c->program, TED4_EXIT_FINE) == TED4_EXIT_FINE ? TED4_ARGUMENTS_DONE
-                                                                      : TED4_ARGUMENTS_BAD;
-}
-
 /* Returns 0 if the machine can run the kernels that TED4_KERNEL names, or if it is not set; else
  * prints a message and returns -1. */
 static int check_kernels(const ted4_command *c)
@@ -63,6 +50,21 @@ static int check_kernels(const ted4_command *c)
         fprintf(stderr, " %s", ted4_level_name(level));
     fputc('\n', stderr);
     return -1;
+}
+
+static int answer(const ted4_command *c, int i)
+{
+    if (c->table[i].letter == 'h')
+        ted4_arguments_help(c, stdout);
+    else if (c->table[i].letter == 'V' && check_kernels(c) != 0)
+        return TED4_ARGUMENTS_BAD;
+    else if (c->table[i].letter == 'V')
+        printf("%s " TED4_VERSION " (specification " TED4_SPEC_VERSION "), kernels %s\n",
+               c->program, ted4_level_name(ted4_level_wanted()));
+    else
+        return i;
+    return ted4_cli_end(c->program, TED4_EXIT_FINE) == TED4_EXIT_FINE ? TED4_ARGUMENTS_DONE
+                                                                      : TED4_ARGUMENTS_BAD;
 }
 
 /* Suggests a similar option after getopt has refused one and printed its message. */

@@ -7,13 +7,21 @@
 set -u
 export LC_ALL=C
 . tests/support/speak.sh
-need kernels ted4dec ted4enc ted4info
+programs="ted4dec ted4info ted4enc ted4edit ted4eval ted4scene ted4tolerance"
+need kernels $programs ted4conf
 stream=conformance/vectors/content/CNT-pop-0.002.ted4
 
 for program in ted4dec ted4enc ted4info; do
     expect "unknown_level_$program" 3 'TED4_KERNEL=v9: this machine has plain' \
         env TED4_KERNEL=v9 "$TED4_BUILD/$program" $stream
 done
+# Which kernels are in use is not what it says then.
+for program in $programs; do
+    expect "unknown_level_version_$program" 3 "$program: TED4_KERNEL=v9: this machine has plain" \
+        env TED4_KERNEL=v9 "$TED4_BUILD/$program" --version
+done
+expect unknown_level_version_ted4conf 3 "ted4conf run: TED4_KERNEL=v9: this machine has plain" \
+    env TED4_KERNEL=v9 "$TED4_BUILD/ted4conf" run --version
 levels=$(TED4_KERNEL=v9 "$TED4_BUILD/ted4dec" $stream 2>&1 | sed -n 's/.*this machine has //p')
 for level in $levels; do
     expect "named_$level" 0 "(specification 1.0 and draft 1.1), kernels $level" \
