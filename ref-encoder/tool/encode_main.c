@@ -2,12 +2,14 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "encode_main.h"
 
+#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include "base/bytes.h"
 #include "check_report.h"
 #include "data/dataset.h"
 #include "data/scatter.h"
@@ -71,6 +73,13 @@ typedef struct {
     double setup, train;
 } times;
 
+/* The beginning of what --json prints of a file. */
+static void print_file(const ted4_request *r, size_t size)
+{
+    printf("{\"bytes\":%zu,\"profile\":\"%s\"", size,
+           r->options.profile == TED4_PROFILE_COMPACT ? "compact" : "main");
+}
+
 static void report(const ted4_training *training, const ted4_coded *c, times s)
 {
     const ted4_request *r = training->request;
@@ -78,22 +87,23 @@ static void report(const ted4_training *training, const ted4_coded *c, times s)
     const ted4_verified *v = &c->verified;
     const unsigned long long steps = t->iteration + training->again;
 
-    if (r->json)
-        printf("{\"bytes\":%zu,\"lambda\":%.7g,\"setup_s\":%.2f,\"train_s\":%.2f,\"steps\":%llu,"
+    if (r->json) {
+        print_file(r, c->size);
+        printf(",\"lambda\":%.7g,\"setup_s\":%.2f,\"train_s\":%.2f,\"steps\":%llu,"
                "\"ms_per_step\":%.3f,\"anchors\":%u,"
                "\"gaussians\":%zu,\"dynamic\":%u,\"estimated_bits\":%.0f,\"coded_bits\":%.0f,"
                "\"probe_with_time\":%.6f,\"probe_without\":%.6f,\"rollbacks\":%llu,\"peak_mib\":%."
                "0f,\"hash\":\"%s\"}\n",
-               c->size, c->lambda, s.setup, s.train, steps,
-               1e3 * s.train / (double)(steps > 0 ? steps : 1), v->anchors, v->gaussians,
-               v->dynamic, v->estimated_bits, v->coded_bits, t->search.probe_loss[0],
-               t->search.probe_loss[1], (unsigned long long)t->monitor.state.rollbacks, peak_mib(),
-               v->hash);
-    else
+               c->lambda, s.setup, s.train, steps, 1e3 * s.train / (double)(steps > 0 ? steps : 1),
+               v->anchors, v->gaussians, v->dynamic, v->estimated_bits, v->coded_bits,
+               t->search.probe_loss[0], t->search.probe_loss[1],
+               (unsigned long long)t->monitor.state.rollbacks, peak_mib(), v->hash);
+    } else {
         ted4_teller_say(
             training->teller,
             "%s: %zu bytes, %u anchors (%u move), %zu Gaussians, trained in %.1f s, hash %s",
             r->out, c->size, v->anchors, v->dynamic, v->gaussians, s.train, v->hash);
+    }
 }
 
 /* Exit status of a run that was ended by a signal, minus the number of the signal. */
@@ -347,6 +357,26 @@ static int complain_of_input(const encoder *e, const ted4_error *error, const ch
     return complain(e, text);
 }
 
+/* Prints what --json says of the file that --transcode has made. Returns the exit status. */
+static int report_transcoded(const encoder *e, const uint8_t *file, size_t size)
+{
+    const ted4_options options = { .max_bytes = UINT64_MAX, .parallel = e->parallel };
+    ted4_error error = { TED4_OK, 0 };
+    ted4_scene *scene;
+    ted4_info info;
+    char hash[33];
+
+    if (ted4_decode(file, size, &options, &scene, &error) != TED4_OK)
+        return complain(e, ted4_status_text(error.code));
+    ted4_scene_info(scene, &info);
+    ted4_scene_free(scene);
+    ted4_hex(hash, info.hash, sizeof info.hash);
+    print_file(e->request, size);
+    printf(",\"anchors\":%" PRIu32 ",\"gaussians\":%zu,\"dynamic\":%" PRIu32 ",\"hash\":\"%s\"}\n",
+           info.n_anchors, info.n_gaussians, info.n_dynamic, hash);
+    return TED4_EXIT_FINE;
+}
+
 /* --transcode. Returns the exit status. */
 static int transcode(const encoder *e)
 {
@@ -372,7 +402,7 @@ static int transcode(const encoder *e)
     status = ted4_file_write(r->out, out, out_size, text, sizeof text) != 0 ? complain(e, text)
                                                                             : TED4_EXIT_FINE;
     if (status == TED4_EXIT_FINE && r->json)
-        printf("{\"bytes\":%zu}\n", out_size);
+        status = report_transcoded(e, out, out_size);
     else if (status == TED4_EXIT_FINE)
         ted4_teller_say(e->teller, "%s: %zu bytes, from %zu", r->out, out_size, size);
     free(file);

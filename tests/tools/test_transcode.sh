@@ -93,4 +93,14 @@ cmp -s "$grid" "$out/kept.ted4" && [ ! -e "$out/log" ] && ok alone_writes_nothin
     fail alone_writes_nothing "a file"
 expect goes_with 0 '"bytes":' "$enc" --transcode "$grid" --profile main -o "$out/a.ted4" -f -j 1 \
     -q -v --json
+# The object says what that of a training says of a file, here of the one that was written.
+for profile in main compact; do
+    "$enc" --transcode "$grid" --profile $profile -o "$out/a.ted4" -f -q --json >"$out/said" 2>&1
+    "$TED4_BUILD/ted4info" "$out/a.ted4" --json >"$out/json"
+    for f in bytes profile anchors gaussians moving hash; do
+        named=$f; [ $f = moving ] && named=dynamic
+        check "json_${profile}_$f" "$out/said" \
+            "\"$named\":$(sed "s/.*\"$f\":\([^,}]*\).*/\1/" "$out/json")"
+    done
+done
 exit $bad
