@@ -41,7 +41,7 @@ else
     done
 fi
 n=$(ls "$work/images" | wc -l)
-[ "$n" -gt 1 ] || die "$1: $n pictures at FPS=$FPS"
+[ "$n" -gt 1 ] || die "$1: $n picture$([ "$n" -eq 1 ] || echo s) at FPS=$FPS"
 match=exhaustive_matcher
 [ "$n" -le 80 ] || match=sequential_matcher
 echo "own-video.sh: $n pictures; looking for their poses ($match; $out/log)"

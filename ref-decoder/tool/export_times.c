@@ -9,6 +9,7 @@
 #include "cli.h"
 #include "json_string.h"
 #include "output.h"
+#include "plural.h"
 #include "sample.h"
 #include "turn.h"
 
@@ -95,8 +96,8 @@ static int export_time(ted4_session *s, const ted4_sampler *how, ted4_time t, ui
                                       "gaussians", (json_int_t)sample.frame.n, "sh_rms",
                                       sample.sh_rms));
     if (code == TED4_EXIT_FINE && s->set->verbose)
-        fprintf(stderr, "ted4dec: %s: %zu of %zu Gaussians, rms error of colours %.4f\n", path,
-                sample.frame.n, s->info.n_gaussians, sample.sh_rms);
+        fprintf(stderr, "ted4dec: %s: %zu of %zu Gaussian%s, rms error of colours %.4f\n", path,
+                sample.frame.n, s->info.n_gaussians, ted4_s(s->info.n_gaussians), sample.sh_rms);
     if (sample.sh_rms > *worst_rms)
         *worst_rms = sample.sh_rms;
     ted4_sample_finish(&sample);

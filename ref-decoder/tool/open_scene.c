@@ -11,6 +11,7 @@
 #include "cli.h"
 #include "clock.h"
 #include "file_cameras.h"
+#include "plural.h"
 
 static void print_element(void *user, size_t offset, const char *element, int64_t index,
                           int64_t value)
@@ -29,10 +30,11 @@ static void tell_cost(const ted4_session *s, size_t size, double ms)
 
     if (set->verbose || (ted4_settings_only_check(set) && !set->quiet))
         fprintf(stderr,
-                "ted4dec: %s: %s, %zu bytes, %" PRIu32 " anchors, %zu Gaussians, %" PRIu32
-                " frames; decoded to attributes in %.1f ms, peak memory %.1f MiB\n",
+                "ted4dec: %s: %s, %zu bytes, %" PRIu32 " anchor%s, %zu Gaussian%s, %" PRIu32
+                " frame%s; decoded to attributes in %.1f ms, peak memory %.1f MiB\n",
                 set->input, s->warned ? "incomplete" : "valid", size, s->info.n_anchors,
-                s->info.n_gaussians, s->info.frames, ms, mib);
+                ted4_s(s->info.n_anchors), s->info.n_gaussians, ted4_s(s->info.n_gaussians),
+                s->info.frames, ted4_s(s->info.frames), ms, mib);
     if (ted4_settings_only_check(set)) {
         json_object_set_new(s->report, "decode_ms", json_real(ms));
         json_object_set_new(s->report, "peak_mib", json_real(mib));
@@ -48,11 +50,11 @@ static void tell_salvage(ted4_session *s, const ted4_salvage *what)
     fprintf(stderr,
             "ted4dec: %s: byte %zu: %s [%s] (specification %s)\n"
             "ted4dec: %s: incomplete: tiles 0 to %" PRIu32 " of %" PRIu32 ", %" PRIu32
-            " anchors of %" PRIu32 "; nothing from byte %zu on: %s [%s]\n",
+            " anchor%s of %" PRIu32 "; nothing from byte %zu on: %s [%s]\n",
             s->set->input, v->offset, ted4_status_text(v->code), ted4_status_id(v->code),
             ted4_status_section(v->code), s->set->input, what->n_tiles - 1, what->tiles_declared,
-            s->info.n_anchors, what->anchors_declared, stop->offset, ted4_status_text(stop->code),
-            ted4_status_id(stop->code));
+            s->info.n_anchors, ted4_s(s->info.n_anchors), what->anchors_declared, stop->offset,
+            ted4_status_text(stop->code), ted4_status_id(stop->code));
     json_object_set_new(s->report, "verdict", json_string("invalid"));
     json_object_set_new(s->report, "error", json_string(ted4_status_id(v->code)));
     json_object_set_new(s->report, "offset", json_integer((json_int_t)v->offset));

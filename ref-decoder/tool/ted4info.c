@@ -16,6 +16,7 @@
 #include "file_cameras.h"
 #include "findings.h"
 #include "json_string.h"
+#include "plural.h"
 #include "ted4.h"
 #include "threads.h"
 #include "turn.h"
@@ -275,15 +276,18 @@ static void cams_text(const ted4_chunk_view *chunk, char *text, size_t size)
 {
     ted4_cams c;
 
-    if (ted4_cams_read(chunk->payload, chunk->size, &c) != 0)
+    if (ted4_cams_read(chunk->payload, chunk->size, &c) != 0) {
         snprintf(text, size, "not as specified");
-    else if (ted4_has_direction(c.up))
-        snprintf(text, size, "%zu %s, up %.4g %.4g %.4g", c.n,
-                 c.kind == TED4_CAMS_PATH ? "cameras of a path" : "cameras", (double)c.up[0],
-                 (double)c.up[1], (double)c.up[2]);
+        return;
+    }
+    const int n = snprintf(text, size, "%zu camera%s%s, up ", c.n, ted4_s(c.n),
+                           c.kind == TED4_CAMS_PATH ? " of a path" : "");
+
+    if (ted4_has_direction(c.up))
+        snprintf(text + n, size - (size_t)n, "%.4g %.4g %.4g", (double)c.up[0], (double)c.up[1],
+                 (double)c.up[2]);
     else
-        snprintf(text, size, "%zu %s, up unknown", c.n,
-                 c.kind == TED4_CAMS_PATH ? "cameras of a path" : "cameras");
+        snprintf(text + n, size - (size_t)n, "unknown");
 }
 
 /* Ancillary chunks: what people say about the scene, and one line per chunk. */

@@ -6,6 +6,8 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "tool/plural.h"
+
 /* Frame rates that differ by more than this, relatively, are different. */
 #define OTHER_RATE 0.01
 /* Test points per axis of the file's cube; the share of all pictures that must show at least one of
@@ -66,13 +68,13 @@ int ted4_belongs_scene(const ted4_info *file, const ted4_dataset *d, char *why, 
     if (file->frames != d->n_frames)
         snprintf(why, why_size,
                  "%u time%s in the file, %u in the scene (--max-frames reads the first ones)",
-                 (unsigned)file->frames, file->frames == 1 ? "" : "s", (unsigned)d->n_frames);
+                 (unsigned)file->frames, ted4_s(file->frames), (unsigned)d->n_frames);
     else if (d->n_frames > 1 && d->rate > 0 && rate > 0 && fabs(rate / d->rate - 1.0) > OTHER_RATE)
         snprintf(why, why_size, "%.4g frames per second in the file, %.4g in the scene", rate,
                  d->rate);
     else if ((double)seeing < SEEN * (double)d->n_pictures)
-        snprintf(why, why_size, "only %zu of %zu pictures look at where it lies", seeing,
-                 d->n_pictures);
+        snprintf(why, why_size, "only %zu of %zu picture%s look%s at where it lies", seeing,
+                 d->n_pictures, ted4_s(d->n_pictures), seeing == 1 ? "s" : "");
     else
         return 1;
     return 0;

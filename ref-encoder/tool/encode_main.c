@@ -21,6 +21,7 @@
 #include "ted4.h"
 #include "tool/cli.h"
 #include "tool/clock.h"
+#include "tool/plural.h"
 #include "train/model/header_from_options.h"
 #include "train/step/trainer_init.h"
 #include "training.h"
@@ -101,8 +102,9 @@ static void report(const ted4_training *training, const ted4_coded *c, times s)
     } else {
         ted4_teller_say(
             training->teller,
-            "%s: %zu bytes, %u anchors (%u move), %zu Gaussians, trained in %.1f s, hash %s",
-            r->out, c->size, v->anchors, v->dynamic, v->gaussians, s.train, v->hash);
+            "%s: %zu bytes, %u anchor%s (%u move), %zu Gaussian%s, trained in %.1f s, hash %s",
+            r->out, c->size, v->anchors, ted4_s(v->anchors), v->dynamic, v->gaussians,
+            ted4_s(v->gaussians), s.train, v->hash);
     }
 }
 
@@ -120,10 +122,10 @@ static void say_exchange(const encoder *e)
         ted4_teller_say(e->teller, "%zu ranks have shared no step: each had one view", x->n);
     else
         ted4_teller_say(e->teller,
-                        "%zu ranks have shared %llu steps: rank 0 has sent %.0f bytes a step, and "
+                        "%zu ranks have shared %llu step%s: rank 0 has sent %.0f bytes a step, and "
                         "spent %.1f ms a step on that and on waiting",
-                        x->n, (unsigned long long)x->steps, (double)x->bytes / (double)x->steps,
-                        1e3 * x->seconds / (double)x->steps);
+                        x->n, (unsigned long long)x->steps, ted4_s(x->steps),
+                        (double)x->bytes / (double)x->steps, 1e3 * x->seconds / (double)x->steps);
 }
 
 /* Trains, codes and writes the file. Returns the exit status. */
@@ -256,9 +258,10 @@ static void say_found(ted4_teller *teller, const ted4_dataset *d)
     else
         snprintf(size, sizeof size, "%d to %d wide", low, high);
     ted4_teller_say(
-        teller, "%s: %zu training pictures, %zu held out, of %u camera%s and %u time%s, %s pixels",
-        d->layout, d->n_pictures - tests, tests, (unsigned)d->n_cameras,
-        d->n_cameras == 1 ? "" : "s", (unsigned)d->n_frames, d->n_frames == 1 ? "" : "s", size);
+        teller, "%s: %zu training picture%s, %zu held out, of %u camera%s and %u time%s, %s pixels",
+        d->layout, d->n_pictures - tests, ted4_s(d->n_pictures - tests), tests,
+        (unsigned)d->n_cameras, ted4_s(d->n_cameras), (unsigned)d->n_frames, ted4_s(d->n_frames),
+        size);
 }
 
 /* Replaces the initial points if the scene has none, or none that are useful. Returns 0, or -1 with
@@ -276,8 +279,8 @@ static int scatter(const encoder *e, ted4_dataset *d, ted4_message *m)
     if (!leads(e->exchange))
         return 0;
     if (what.outside > 0)
-        ted4_teller_error(teller, "warning: %zu initial points outside the bounds are not used",
-                          what.outside);
+        ted4_teller_error(teller, "warning: %zu initial point%s outside the bounds %s not used",
+                          what.outside, ted4_s(what.outside), what.outside == 1 ? "is" : "are");
     if (what.scattered > 0 && what.given > 0)
         ted4_teller_error(teller,
                           "warning: most of the %zu initial points do not lie on what "
@@ -398,7 +401,8 @@ static int transcode(const encoder *e)
     if (sorted)
         ted4_teller_error(e->teller, "warning: anchors are in another order, with another hash");
     if (dropped > 0)
-        ted4_teller_error(e->teller, "warning: %zu unknown chunks are left out", dropped);
+        ted4_teller_error(e->teller, "warning: %zu unknown chunk%s %s left out", dropped,
+                          ted4_s(dropped), dropped == 1 ? "is" : "are");
     status = ted4_file_write(r->out, out, out_size, text, sizeof text) != 0 ? complain(e, text)
                                                                             : TED4_EXIT_FINE;
     if (status == TED4_EXIT_FINE && r->json)

@@ -7,6 +7,8 @@
 
 #include <jansson.h>
 
+#include "tool/plural.h"
+
 static void print_text(const ted4_eval_sums *t, const ted4_eval_style *style)
 {
     const double n = (double)t->views, fitted = (double)t->fitted_views;
@@ -20,11 +22,12 @@ static void print_text(const ted4_eval_sums *t, const ted4_eval_style *style)
     if (style->colours && t->fitted_views > 0)
         printf("raw        %.4f dB\nfitted     %.4f dB\n", t->raw / fitted, t->fitted / fitted);
     if (style->colours)
-        printf("of         %zu views\n", t->fitted_views);
+        printf("of         %zu view%s\n", t->fitted_views, ted4_s(t->fitted_views));
     if (style->moving && t->moving.pixels > 0)
         printf("moving     %.4f dB\n", ted4_moving_psnr(&t->moving));
     if (style->moving)
-        printf("of         %zu pixels in %zu views\n", t->moving.pixels, t->moving.views);
+        printf("of         %zu pixel%s in %zu view%s\n", t->moving.pixels, ted4_s(t->moving.pixels),
+               t->moving.views, ted4_s(t->moving.views));
 }
 
 /* Returns null for a metric that is infinite or undefined (its window exceeds the picture, or it is

@@ -14,6 +14,7 @@
 
 #include "json_line.h"
 #include "tool/clock.h"
+#include "tool/plural.h"
 #include "train/search/candidates.h"
 #include "train/state/anchor_masks.h"
 #include "train/monitor/monitor.h"
@@ -321,10 +322,10 @@ int ted4_run_log_closing(ted4_run_log *l, const ted4_trainer *t, char *why, size
 
     if (l->teller != NULL)
         ted4_teller_say(l->teller,
-                        "closing: %llu of %llu anchors moved, and the motion of %llu explained "
+                        "closing: %llu of %llu anchor%s moved, and the motion of %llu explained "
                         "nothing",
                         (unsigned long long)c->moving, (unsigned long long)c->anchors,
-                        (unsigned long long)c->closed);
+                        ted4_s(c->anchors), (unsigned long long)c->closed);
     if (l->file < 0)
         return 0;
     begin(&line, t, "closing");
@@ -343,11 +344,12 @@ int ted4_run_log_trials(ted4_run_log *l, const ted4_trainer *t, size_t first, ch
         if (l->teller != NULL)
             ted4_teller_say(l->teller,
                             "capacity: %s %lld to %lld %s: cost %.6f to %.6f (distortion %.6f to "
-                            "%.6f, bytes %.0f to %.0f), after %lld steps each",
+                            "%.6f, bytes %.0f to %.0f), after %lld step%s each",
                             ted4_candidate_name((ted4_candidate)x->candidate), (long long)x->from,
                             (long long)x->to, x->taken ? "taken" : "left", x->before.cost,
                             x->after.cost, x->before.distortion, x->after.distortion,
-                            x->before.bytes, x->after.bytes, (long long)x->steps);
+                            x->before.bytes, x->after.bytes, (long long)x->steps,
+                            ted4_s((uint64_t)x->steps));
         if (l->file < 0)
             continue;
 

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 
 #include "data/flicker.h"
+#include "tool/plural.h"
 #include "train/search/candidates.h"
 #include "train/state/anchor_masks.h"
 #include "train/state/dropout.h"
@@ -48,10 +49,11 @@ static void put_moving(FILE *f, const ted4_trainer *t)
     if (!t->opt.capacity || t->layout.head.motion == TED4_MOTION_NONE ||
         !t->layout.head.temporal_mask)
         return;
-    fprintf(f,
-            "capacity.moving=%zu of %zu anchors: masks learn in every step whether motion is worth "
-            "its bits",
-            ted4_count_dynamic(t), t->anchors.n);
+    fprintf(
+        f,
+        "capacity.moving=%zu of %zu anchor%s: masks learn in every step whether motion is worth "
+        "its bits",
+        ted4_count_dynamic(t), t->anchors.n, ted4_s(t->anchors.n));
     if (c->moving > 0)
         fprintf(f, ", and in stage 1 the motion of %llu of %llu explained nothing",
                 (unsigned long long)c->closed, (unsigned long long)c->moving);
@@ -67,7 +69,7 @@ static void put_trial(FILE *f, size_t number, const struct ted4_trial *x)
             (long long)x->to, x->taken ? "taken" : "left", x->before.cost, x->after.cost,
             x->before.distortion, x->after.distortion, x->before.bytes, x->after.bytes);
     if (x->steps > 0)
-        fprintf(f, "after %lld steps each\n", (long long)x->steps);
+        fprintf(f, "after %lld step%s each\n", (long long)x->steps, ted4_s((uint64_t)x->steps));
     else
         fprintf(f, "at sight\n");
 }

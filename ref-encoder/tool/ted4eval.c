@@ -26,6 +26,7 @@
 #include "tool/leftovers.h"
 #include "tool/output.h"
 #include "tool/picture_out.h"
+#include "tool/plural.h"
 #include "teller.h"
 #include "tool/threads.h"
 
@@ -440,8 +441,8 @@ static void judge_moving(session *s, const ted4_picture *p, const uint8_t *truth
     s->sum.moving.pixels += of.pixels;
     s->sum.moving.views++;
     if (s->set->verbose)
-        fprintf(stderr, "%s frame %" PRIu32 ": moving %.4f of %zu pixels\n", p->path, p->frame,
-                ted4_moving_psnr(&of), of.pixels);
+        fprintf(stderr, "%s frame %" PRIu32 ": moving %.4f of %zu pixel%s\n", p->path, p->frame,
+                ted4_moving_psnr(&of), of.pixels, ted4_s(of.pixels));
 }
 
 static int evaluate_picture(session *s, size_t i)
@@ -502,9 +503,9 @@ static int fit_colours(session *s)
     ted4_teller_clear(&teller);
     if (cameras > 0)
         fprintf(stderr,
-                "ted4eval: warning: %zu of these pictures are by %zu cameras without training "
+                "ted4eval: warning: %zu of these pictures %s by %zu camera%s without training "
                 "pictures: their colours cannot be fitted\n",
-                views, cameras);
+                views, views == 1 ? "is" : "are", cameras, ted4_s(cameras));
     return TED4_EXIT_FINE;
 }
 

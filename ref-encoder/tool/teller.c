@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "tool/clock.h"
+#include "tool/plural.h"
 #include "tool/thread_start.h"
 
 /* All in seconds: how often the thread wakes up, and the time between status lines, elsewhere
@@ -68,13 +69,17 @@ void ted4_teller_line(const ted4_facts *f, double clock, double since, char *tex
     text[0] = 0;
     switch (f->kind) {
     case TED4_TELL_LOADING: snprintf(text, size, "loading %s, %s so far", f->name, past); break;
-    case TED4_TELL_UNPACKING: snprintf(text, size, "unpacking %s: %d frames", f->name, n); break;
+    case TED4_TELL_UNPACKING:
+        snprintf(text, size, "unpacking %s: %d frame%s", f->name, n, ted4_s(f->step));
+        break;
     case TED4_TELL_STARTING: snprintf(text, size, "%s, %s so far", f->name, past); break;
     case TED4_TELL_TRAINING: training_line(f, clock, text, size); break;
     case TED4_TELL_CODING:
         snprintf(text, size, "coding and checking the file, %s so far", past);
         break;
-    case TED4_TELL_DRAWING: snprintf(text, size, "%d of %d pictures compared", n, all); break;
+    case TED4_TELL_DRAWING:
+        snprintf(text, size, "%d of %d picture%s compared", n, all, ted4_s(f->total));
+        break;
     default: break;
     }
 }

@@ -77,6 +77,11 @@ static void test_scene(void **state)
     expect(&p, "only 0 of 12 pictures look at where it lies");
     p.file.origin[2] = 5;
     expect(&p, NULL); /* its lower end is still visible */
+    p.d.n_pictures = 1;
+    p.file.origin[2] = 9;
+    expect(&p, "only 0 of 1 picture look at where it lies");
+    p.d.n_pictures = CAMERAS;
+    p.file.origin[2] = 5;
     /* The cube is behind half of the cameras or more. */
     p.file.origin[2] = 0;
     p.file.origin[0] = 60;

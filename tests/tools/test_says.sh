@@ -108,7 +108,7 @@ if script -qec true /dev/null >/dev/null 2>&1 </dev/null; then
     rm -rf "$out/cache/ted4"
     PATH=$out/bin:$PATH script -qec "'$enc' '$out/clips' --check" "$out/typescript" >/dev/null \
         2>&1 </dev/null
-    check terminal "$out/typescript" "ted4enc: loading $out/clips" "unpacking a.mp4: 1 frames"
+    check terminal "$out/typescript" "ted4enc: loading $out/clips" "unpacking a.mp4: 1 frame"
 else
     skip terminal "there is no program script, or no terminal for it"
 fi
@@ -145,6 +145,16 @@ expect eval_other 3 "x.ted4: cannot be of $out/longer: 4 times in the file, 5 in
     "$TED4_BUILD/ted4eval" "$out/x.ted4" "$out/longer" -q
 expect eval_anyway 0 'psnr ' "$TED4_BUILD/ted4eval" "$out/x.ted4" "$out/longer" --anyway
 expect eval_first_times 0 'psnr ' "$TED4_BUILD/ted4eval" "$out/x.ted4" "$out/longer" --max-frames 4
+
+# One is no plural.
+"$TED4_BUILD/ted4scene" still -o "$out/one" --layout calibration --size 32x24 --frames 1 \
+    --cameras 1 --test-cameras 0 -j 1 2>/dev/null
+"$enc" "$out/one" --check 2>"$out/err" >/dev/null
+check one_picture "$out/err" ": 1 training picture, 0 held out, of 1 camera and 1 time, "
+one=conformance/vectors/worked/WRK-annex-b1.ted4
+expect one_anchor 0 ": valid, 317 bytes, 1 anchor, 1 Gaussian, 1 frame; " \
+    "$TED4_BUILD/ted4dec" $one --test
+expect one_exported 0 ": 0 of 1 Gaussian, " "$TED4_BUILD/ted4dec" $one -o "$out/one.ply" -v
 
 # If nothing is held out, the line says that its pictures were trained on.
 "$TED4_BUILD/ted4scene" pop -o "$out/all" --layout calibration --size 32x24 --frames 4 --cameras 5 \

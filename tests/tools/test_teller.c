@@ -145,6 +145,10 @@ static void test_lines(void **state)
                 "anchors 3900  bytes 34868  12.3 ms/step  1 s left");
     expect_line(&(ted4_facts) { .kind = TED4_TELL_UNPACKING, .name = "cam00.mp4", .step = 120 }, 0,
                 7, "unpacking cam00.mp4: 120 frames");
+    expect_line(&(ted4_facts) { .kind = TED4_TELL_UNPACKING, .name = "cam00.mp4", .step = 1 }, 0, 7,
+                "unpacking cam00.mp4: 1 frame");
+    expect_line(&(ted4_facts) { .kind = TED4_TELL_DRAWING, .step = 1, .total = 1 }, 0, 7,
+                "1 of 1 picture compared");
     expect_line(&(ted4_facts) { .kind = TED4_TELL_LOADING, .name = "a/b" }, 0, 7,
                 "loading a/b, 7 s so far");
     expect_line(&(ted4_facts) { .kind = TED4_TELL_CODING }, 0, 7,

@@ -414,7 +414,7 @@ static void check_colours(double psnr)
     assert_true(result("views_fitted") == 0);
     assert_true(result("psnr_fitted") == -1.0); /* null */
     assert_int_equal(run("ted4eval v1.ted4 scene --anyway --colours --hold-out p0 2>&1 | "
-                         "grep -c 'by 1 cameras without training pictures'"),
+                         "grep -c 'by 1 camera without training pictures'"),
                      0);
 }
 

@@ -57,6 +57,8 @@ expect reordered_valid 0 '"valid"' "$dec" --ted4-run "$out/m.ted4" --tiers T1
 ancillary=$vectors/valid/extension/EXT-many.ted4
 expect dropped 0 'unknown chunks are left out' \
     "$enc" --transcode "$ancillary" --profile compact -q -f -o "$out/a.ted4"
+expect dropped_one 0 'warning: 1 unknown chunk is left out' \
+    "$enc" --transcode "$vectors/valid/extension/EXT-size-0.ted4" -f -o "$out/a.ted4"
 expect missing 3 "ted4enc: $out/none: No such file or directory" \
     "$enc" --transcode "$out/none" -f -o "$out/a.ted4"
 expect broken 1 'speak.sh: byte 0: not a TED4 file [con.magic]' \
