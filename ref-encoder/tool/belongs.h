@@ -1,6 +1,6 @@
 /* belongs.h - tests whether a .ted4 file can belong to a scene. The test compares what both say
  * about time and space, and the pictures: if the rendered pictures have a larger error than one
- * constant colour per picture, the file was trained on another scene.
+ * constant colour per picture, the file was trained on another scene, or hardly at all.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_BELONGS_H
 #define TED4_BELONGS_H

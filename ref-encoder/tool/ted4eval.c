@@ -77,7 +77,8 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
                       "also fit each camera's colours on its training pictures" },
     [OPT_MOVING] = { 0, "moving", NULL,
                      "also judge the pixels that show what moves before still cameras" },
-    [OPT_ANYWAY] = { 0, "anyway", NULL, "compare also where the file cannot be of this scene" },
+    [OPT_ANYWAY] = { 0, "anyway", NULL,
+                     "compare also where the file cannot, or may not, be of this scene" },
     [OPT_FORCE] = { 'f', "force", NULL, "overwrite pictures" },
     [OPT_JSON] = { 0, "json", NULL, "result as one JSON object" },
     [OPT_QUIET] = { 'q', "quiet", NULL, "errors only" },
@@ -95,7 +96,7 @@ static const ted4_command COMMAND = {
     OPTIONS,
     N_OPTIONS,
     "Exit codes: 0 fine, 1 file refused, 3 usage, input, output or resources, or the\n"
-    "file cannot be of this scene.\n\n"
+    "file cannot, or may not, be of this scene.\n\n"
     "Examples:\n"
     "  ted4eval a.ted4 scene --downscale 2 --sheet sheet.png\n",
     NULL,
@@ -266,15 +267,16 @@ static int open_scene(session *s)
     return s->viewer == NULL ? failed(s->set->scene, "out of memory") : TED4_EXIT_FINE;
 }
 
-/* Refuses a file that cannot belong to the scene, unless --anyway is given. why: the reason if
- * belongs is 0. Returns an exit code. */
-static int refuse_pair(const session *s, int belongs, const char *why)
+/* Refuses a file that does not seem to belong to the scene, unless --anyway is given. why: the
+ * reason if belongs is 0. sure: no training can be the cause of it. Returns an exit code. */
+static int refuse_pair(const session *s, int belongs, int sure, const char *why)
 {
     if (belongs || s->set->anyway)
         return TED4_EXIT_FINE;
     ted4_teller_clear(&teller);
-    fprintf(stderr, "ted4eval: %s: cannot be of %s: %s; --anyway compares them all the same\n",
-            s->set->input, s->set->scene, why);
+    fprintf(stderr, "ted4eval: %s: %s be of %s%s: %s; --anyway compares them all the same\n",
+            s->set->input, sure ? "cannot" : "may not", s->set->scene,
+            sure ? "" : ", or is hardly trained", why);
     return TED4_EXIT_TOOL;
 }
 
@@ -519,7 +521,7 @@ static int evaluate(session *s)
 
     for (size_t i = 0; i < s->data.n_pictures; i++)
         n += (size_t)in_split(s, i);
-    code = refuse_pair(s, ted4_belongs_scene(&s->info, &s->data, why, sizeof why), why);
+    code = refuse_pair(s, ted4_belongs_scene(&s->info, &s->data, why, sizeof why), 1, why);
     if (code != TED4_EXIT_FINE)
         return code;
     if (n == 0)
@@ -549,7 +551,7 @@ static int evaluate(session *s)
                            s->sheet.height * s->sheet.rows, s->sheet.rgb, why, sizeof why) != 0)
         code = failed(set->sheet, why);
     if (code == TED4_EXIT_FINE)
-        code = refuse_pair(s, ted4_belongs_pictures(&s->squares, why, sizeof why), why);
+        code = refuse_pair(s, ted4_belongs_pictures(&s->squares, why, sizeof why), 0, why);
     if (code == TED4_EXIT_FINE)
         ted4_eval_print(&s->sum, &s->info,
                         &(ted4_eval_style) { set->want_test ? "test" : "train", set->json,

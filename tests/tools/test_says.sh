@@ -144,6 +144,11 @@ expect eval 0 "ted4eval: comparing $out/x.ted4 with $out/scene" "$TED4_BUILD/ted
 expect eval_other 3 "x.ted4: cannot be of $out/longer: 4 times in the file, 5 in the scene" \
     "$TED4_BUILD/ted4eval" "$out/x.ted4" "$out/longer" -q
 expect eval_anyway 0 'psnr ' "$TED4_BUILD/ted4eval" "$out/x.ted4" "$out/longer" --anyway
+# Pictures alone do not tell another scene from too short a training.
+"$enc" "$out/scene" -o "$out/young.ted4" $small --iterations 1,1 -q
+expect eval_young 3 "young.ted4: may not be of $out/scene, or is hardly trained: its pictures are " \
+    "$TED4_BUILD/ted4eval" "$out/young.ted4" "$out/scene" -q
+expect eval_young_anyway 0 'psnr ' "$TED4_BUILD/ted4eval" "$out/young.ted4" "$out/scene" --anyway
 expect eval_first_times 0 'psnr ' "$TED4_BUILD/ted4eval" "$out/x.ted4" "$out/longer" --max-frames 4
 
 # One is no plural.
