@@ -229,6 +229,14 @@ install-programs: all
 	install -d "$(DESTDIR)$(PREFIX)/bin"
 	install $(PROGS) $B/ted4conf $B/ted4tolerance "$(DESTDIR)$(PREFIX)/bin"
 
+# What install has written, by name: nothing is built for it. Of folders, only TED4's own go, and
+# only when nothing else lies in them. The other rules are beside those of install.
+# $(1): files, or folders, in $(2)
+REMOVE = for f in $(1); do rm -f "$(2)/$$f" || exit; done
+REMOVE_FOLDERS = for f in $(1); do rmdir "$(2)/$$f" 2>/dev/null || :; done
+uninstall::
+	$(call REMOVE,$(notdir $(PROGS)) ted4conf ted4tolerance,$(DESTDIR)$(PREFIX)/bin)
+
 # All targets, of the included files too; tests/lint/help.sh sees that none is missing.
 help:
 	@cat tools/make-help.txt
@@ -237,6 +245,6 @@ clean:
 	rm -rf build build-* out
 
 .PHONY: all always test-programs test test-machines test-levels $(BOTH) $(BOTH:%=%-levels)
-.PHONY: demo lint check asan deps deps-dev install install-programs help clean
+.PHONY: demo lint check asan deps deps-dev install install-programs uninstall help clean
 .SECONDARY:
 -include $(shell find $B -name '*.d' 2>/dev/null)

@@ -42,6 +42,13 @@ install-library: library
 	for f in ted4-config ted4-config-version; do \
 	    $(FILL) ref-decoder/$$f.cmake.in >$B/$$f.cmake && \
 	    install -m 644 $B/$$f.cmake "$(DESTDIR)$(LIBDIR)/cmake/ted4" || exit; done
+uninstall::
+	$(call REMOVE,libted4dec.a $(SONAME) libted4dec.so pkgconfig/ted4.pc \
+	    cmake/ted4/ted4-config.cmake cmake/ted4/ted4-config-version.cmake,$(DESTDIR)$(LIBDIR))
+	$(call REMOVE,ted4.h base/parallel.h base/status.h \
+	    base/status.def,$(DESTDIR)$(PREFIX)/include/ted4)
+	$(call REMOVE_FOLDERS,cmake/ted4,$(DESTDIR)$(LIBDIR))
+	$(call REMOVE_FOLDERS,ted4/base ted4,$(DESTDIR)$(PREFIX)/include)
 
 # The types behind the symbols, as abidw (Debian: abigail-tools) reads them from debug information;
 # tests/tools/test_library.sh compares a build with them. To be made again, on x86-64, by who means

@@ -1,8 +1,9 @@
 #!/bin/sh
 # test_install.sh - the files of `make install` are sufficient for writing a program: <ted4/ted4.h>
 # in C and in C++, with no other folder of headers; libted4dec.a, whose whole content needs no
-# library but zlib, xxHash and libm; and the programs that doc/programs.md names. Prints lines as a
-# cmocka program does; run by `make test` from the project's root.
+# library but zlib, xxHash and libm; and the programs that doc/programs.md names. `make uninstall`
+# removes them all, and nothing else. Prints lines as a cmocka program does; run by `make test` from
+# the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 . tests/support/speak.sh
@@ -72,4 +73,34 @@ if command -v "${CXX:-c++}" >/dev/null; then
 else
     skip in_cxx "there is no C++ compiler"
 fi
+
+# `make uninstall` removes all that and nothing else, without a build; folders that are not the
+# project's own stay.
+# uninstall NAME ROOT VARIABLE...: what is no folder in $2 is then what ROOT.others holds.
+uninstall() {
+    name=$1 root=$2; shift 2
+    make uninstall B="$out/none" DESTDIR="$root" "$@" >"$out/said" 2>&1 ||
+        fail "$name" "$(cat "$out/said")"
+    (cd "$root" && find . ! -type d | sort) >"$out/left"
+    if cmp -s "$out/left" "$root.others"; then ok "$name"; else
+        fail "$name" "$(cat "$out/left")"; fi
+    find "$root" -type d -name 'ted4*' >"$out/left"
+    if [ -s "$out/left" ]; then fail "${name}_folders" "$(cat "$out/left")"; else
+        ok "${name}_folders"; fi
+}
+others="bin/other bin/ted4dec.old include/other.h lib/libted4dec.so.0 lib/pkgconfig/other.pc
+    share/man/man1/other.1 share/fish/vendor_completions.d/other.fish"
+for f in $others; do echo "$f" >"$usr/$f"; done
+echo $others | tr ' ' '\n' | sed 's|^|./usr/|' | sort >"$out/a root.others"
+uninstall uninstalls "$out/a root" PREFIX=/usr
+uninstall uninstalls_nothing "$out/a root" PREFIX=/usr
+[ -e "$out/none" ] && fail uninstalls_unbuilt "a build" || ok uninstalls_unbuilt
+set -- PREFIX="/u s r" LIBDIR="/l i b" ZSH_COMPLETIONS="/z s h"
+make install B="$TED4_BUILD" DESTDIR="$out/b" "$@" >"$out/said" 2>&1 || fail b "$(cat "$out/said")"
+: >"$out/b.others"
+uninstall uninstalls_elsewhere "$out/b" "$@"
+mkdir -p "$out/b/u s r/share/ted4"
+echo mine >"$out/b/u s r/share/ted4/mine"
+make uninstall DESTDIR="$out/b" "$@" >"$out/said" 2>&1 && [ -e "$out/b/u s r/share/ted4/mine" ] &&
+    ok folder_in_use || fail folder_in_use "$(cat "$out/said")"
 exit $bad

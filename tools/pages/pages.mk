@@ -48,5 +48,15 @@ install-pages: man
 	install -m 644 tools/ted4.xml "$(SHARE)/mime/packages"
 	install -m 644 tools/ted4.magic "$(SHARE)/ted4"
 
+CONF_COMMANDS = cover encode gen mutants replay run
+PAGES_NAMES   = $(notdir $(PAGES_PROG))
+uninstall::
+	$(call REMOVE,$(PAGES_NAMES:%=%.1) $(CONF_COMMANDS:%=ted4conf-%.1),$(SHARE)/man/man1)
+	$(call REMOVE,$(PAGES_NAMES),$(SHARE)/bash-completion/completions)
+	$(call REMOVE,_ted4,$(DESTDIR)$(ZSH_COMPLETIONS))
+	$(call REMOVE,$(PAGES_NAMES:%=%.fish),$(SHARE)/fish/vendor_completions.d)
+	$(call REMOVE,mime/packages/ted4.xml ted4/ted4.magic,$(SHARE))
+	$(call REMOVE_FOLDERS,ted4,$(SHARE))
+
 $B/tests/tools/test_manual: | man $(PROGS) $B/ted4conf $B/ted4tolerance
 .PHONY: man install-pages
