@@ -1,9 +1,9 @@
 #!/bin/sh
 # test_install.sh - the files of `make install` are sufficient for writing a program: <ted4/ted4.h>
 # in C and in C++, with no other folder of headers; libted4dec.a, whose whole content needs no
-# library but zlib, xxHash and libm; and the programs that doc/programs.md names. `make uninstall`
-# removes them all, and nothing else. Prints lines as a cmocka program does; run by `make test` from
-# the project's root.
+# library but zlib, xxHash and libm; and the programs that doc/programs.md names, with each command
+# of ted4conf. `make uninstall` removes them all, and nothing else. Prints lines as a cmocka program
+# does; run by `make test` from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 . tests/support/speak.sh
@@ -20,6 +20,10 @@ if cmp -s "$TED4_BUILD/how" "$out/how"; then ok as_built; else fail as_built "$(
 wanted=$(echo $(sed -n 's/^    \(ted4[a-z]*\) .*/\1/p' doc/programs.md) ted4scene | tr ' ' '\n' |
     sort -u)
 if [ "$(ls "$usr/bin")" = "$wanted" ]; then ok programs; else fail programs "$(ls "$usr/bin")"; fi
+for c in $("$TED4_BUILD/ted4conf" --help | sed -n 's/^  \([a-z]*\) .*/\1/p'); do
+    if grep -q "^    ted4conf \(.* \)\{0,1\}$c " doc/programs.md; then ok "told_$c"; else
+        fail "told_$c" "doc/programs.md does not name it"; fi
+done
 if [ "$(echo $(ls "$usr/lib"))" = "cmake libted4dec.a libted4dec.so libted4dec.so.1 pkgconfig" ]; \
     then ok libraries; else fail libraries "$(ls "$usr/lib")"; fi
 for f in man/man1/ted4enc.1 bash-completion/completions/ted4enc zsh/site-functions/_ted4 \
