@@ -28,8 +28,8 @@ int ted4_cli_end(const char *program, int code);
 /* read_file.c: reads a whole file, or standard input if path is "-". Returns a buffer from malloc
  * that the caller frees, or NULL with errno set. */
 uint8_t *ted4_read_file(const char *path, size_t *size);
-/* The same for a file that should be a TED4 file: of another one, whatever its size, only the
- * beginning is read, with which it is refused. */
+/* The same for a file that should be a TED4 file: of another one, or of one that is longer than its
+ * level allows, whatever its size, only as much is read as it is refused with. */
 uint8_t *ted4_read_ted4(const char *path, size_t *size);
 /* Reads the rest of a stream, which may be a pipe. Returns a buffer from malloc that the caller
  * frees, or NULL if there is no memory or the stream fails. */

@@ -6,16 +6,24 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Does data of at least 8 bytes begin as a TED4 file does (spec 5.1)? */
-static int begins_as_ted4(const uint8_t *data)
+/* Returns the size beyond which all files get the same verdict, by what their file header says
+ * (spec 5.1); data holds at least that. More bytes than the level allows (spec 13) are refused for
+ * their number, whatever they are, and what begins in another way is refused for its beginning. */
+static size_t most_of_ted4(const uint8_t *data)
 {
+    enum { LEVEL_AT = 11, BOUNDED = 4, UNBOUNDED = 31 };
     static const uint8_t magic[8] = { 0x89, 'T', 'E', 'D', '4', '\r', '\n', 0x1a };
+    const unsigned level = data[LEVEL_AT];
 
-    return memcmp(data, magic, sizeof magic) == 0;
+    if (memcmp(data, magic, sizeof magic) != 0)
+        return 0;
+    if (level == UNBOUNDED)
+        return SIZE_MAX;
+    return level >= 1 && level <= BOUNDED ? (size_t)1 << (20 + 2 * level) : 0;
 }
 
 /* Reads into a buffer that doubles, so that pipes work and no reported file size is trusted. With
- * only_ted4, the first buffer is all that is read of something else. */
+ * only_ted4, it stops where what follows does not change the verdict. */
 static uint8_t *read_stream(FILE *f, int only_ted4, size_t *size)
 {
     size_t capacity = 1 << 16, n = 0;
@@ -23,7 +31,7 @@ static uint8_t *read_stream(FILE *f, int only_ted4, size_t *size)
 
     while (data != NULL) {
         n += fread(data + n, 1, capacity - n, f);
-        if (n < capacity || (only_ted4 && !begins_as_ted4(data)))
+        if (n < capacity || (only_ted4 && n > most_of_ted4(data)))
             break;
         uint8_t *const more = capacity > SIZE_MAX / 2 ? NULL : realloc(data, capacity *= 2);
 

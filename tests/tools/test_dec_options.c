@@ -4,6 +4,7 @@
 #include <jansson.h>
 #include <math.h>
 
+#include "norm/limits.h"
 #include "tool_files.h"
 
 static void test_verdicts(void **state)
@@ -77,6 +78,62 @@ static void test_no_such_format(void **state)
     }
     assert_int_equal(run("head -c 1000000 /dev/zero | ted4info - --validate --json"), 1);
     assert_non_null(strstr(out, "\"bytes\":1000000"));
+}
+
+/* Pipes a file and so many zeros into ted4dec. Returns 1 if it was refused with that error and no
+ * other, else 0. */
+static int refused_longer(const char *name, unsigned long long zeros, const char *error)
+{
+    size_t size;
+
+    if (run("{ cat %s; head -c %llu /dev/zero && : >all; } | ted4dec -", name, zeros) != 1)
+        return 0;
+    char *const err = (char *)contents("err", &size);
+
+    err[size] = '\0';
+    const int found = strstr(err, error) != NULL && strchr(err, '\n') == err + size - 1;
+
+    free(err);
+    return found;
+}
+
+/* No more is read of a stream than a file of its level may have, and a bit: it is refused then,
+ * whatever follows. Up to that the verdict is that of a file. */
+static void test_endless(void **state)
+{
+    enum { LEVEL_AT = 11 };
+    char trailing[100];
+    size_t size;
+
+    (void)state;
+    need_programs();
+    uint8_t *const data = contents("v1.ted4", &size);
+
+    snprintf(trailing, sizeof trailing, "byte %zu: bytes after the last chunk [con.trailing]",
+             size);
+    for (unsigned level = 1; level <= 3; level++) {
+        const unsigned long long most = ted4_limits_of(level)->file_bytes;
+
+        data[LEVEL_AT] = (uint8_t)level;
+        write_contents("level.ted4", data, size);
+        assert_int_equal(run("ted4dec level.ted4"), 0);
+        assert_true(refused_longer("level.ted4", 1, trailing));
+        assert_true(refused_longer("level.ted4", most - size, trailing));
+        assert_true(refused_longer("level.ted4", most - size + 1, "byte 11: "));
+        assert_int_equal(run("rm all"), 0);
+        assert_true(refused_longer("level.ted4", 3 * most, "[lvl.exceeded]"));
+        assert_false(exists("all"));
+    }
+    /* Level 31 has no bound, and a level that does not exist is an error of its own. */
+    data[LEVEL_AT] = TED4_LEVEL_UNBOUNDED;
+    write_contents("level.ted4", data, size);
+    assert_true(refused_longer("level.ted4", 20000000, trailing));
+    data[LEVEL_AT] = 7;
+    write_contents("level.ted4", data, size);
+    assert_int_equal(run("rm all"), 0);
+    assert_true(refused_longer("level.ted4", 1000000, "byte 11: "));
+    assert_false(exists("all"));
+    free(data);
 }
 
 /* Runs ted4dec, which must end with status 3 and one line on stderr that holds the text. */
@@ -311,6 +368,7 @@ int main(void)
         cmocka_unit_test(test_default_degree), cmocka_unit_test(test_up),
         cmocka_unit_test(test_several),        cmocka_unit_test(test_seconds),
         cmocka_unit_test(test_help),           cmocka_unit_test(test_no_such_format),
+        cmocka_unit_test(test_endless),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }
