@@ -50,6 +50,9 @@ END
     2>/dev/null
 edit "$out/all.ted4" -o "$out/path.ted4" --path "$out/path.json" --thumbnail "$out/view0.png"
 equal path "$(info path | grep -c 'CAMS, 180 bytes: 2 cameras of a path, up 0 0 1$')" 1
+{ sed -n 1p "$out/path.json"; echo '  "frame":3}]'; } >"$out/single.json"
+edit "$out/plain.ted4" -o "$out/single.ted4" --path "$out/single.json" --cameras "$out/single.json"
+equal single "$(info single | grep -c ': 1 camera, up unknown$\|: 1 camera of a path, up unknown$')" 2
 equal both_kinds "$(info path | grep -c 'CAMS')" 2
 edit "$out/path.ted4" -o "$out/path.ted4" -f --strip CAMS
 equal in_place "$(info path | grep -c 'CAMS')" 0
