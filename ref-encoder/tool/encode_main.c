@@ -459,8 +459,6 @@ int ted4_encoder_main(int argc, char **argv, ted4_exchange *x)
 
     ted4_teller_begin(&teller, "ted4enc", r.quiet);
     ted4_stop_on_signals(r.quiet);
-    if (r.idle_every)
-        ted4_teller_say(&teller, "note: --checkpoint-every: only with --checkpoint (see --help)");
 
     int status = check_outputs(&e);
 

@@ -453,6 +453,13 @@ static int apply(ted4_request *r, const pending *p)
     return status;
 }
 
+/* Refuses an option that would be without effect: whoever wrote it expects something of it. */
+static int lonely(const char *option, const char *why)
+{
+    fprintf(stderr, "ted4enc: %s: %s (see --help)\n", option, why);
+    return TED4_REQUEST_BAD;
+}
+
 /* Checks that what was given goes together. */
 static int check(const ted4_request *r, const pending *p)
 {
@@ -466,9 +473,11 @@ static int check(const ted4_request *r, const pending *p)
         return complain("-o FILE.ted4 expected");
     if (r->out != NULL && !ted4_has_suffix(r->out, ".ted4"))
         return bad_output(r->out);
-    return r->resume && r->checkpoint == NULL
-               ? complain("--resume: only with --checkpoint (see --help)")
-               : TED4_REQUEST_GO;
+    if (r->resume && r->checkpoint == NULL)
+        return lonely("--resume", "only with --checkpoint");
+    if (r->checkpoint_every >= 0 && r->checkpoint == NULL)
+        return lonely("--checkpoint-every", "only with --checkpoint");
+    return TED4_REQUEST_GO;
 }
 
 int ted4_request_parse(ted4_request *r, int argc, char **argv)
@@ -498,7 +507,6 @@ int ted4_request_parse(ted4_request *r, int argc, char **argv)
 
     const int status = check(r, &p);
 
-    r->idle_every = r->checkpoint_every >= 0 && r->checkpoint == NULL;
     if (r->checkpoint_every < 0)
         r->checkpoint_every = DEFAULT_EVERY;
     return status == TED4_REQUEST_GO ? apply(r, &p) : status;

@@ -15,7 +15,6 @@ typedef struct {
     const char *scene, *out, *checkpoint, *stage1, *log;
     int downscale, max_frames, cache_mib, checkpoint_every, threads, resume, check, json, force,
         quiet, verbose, black, search_report;
-    int idle_every; /* 1: --checkpoint-every was given, and no --checkpoint */
     int premultiplied;
     const char *hold_out[TED4_REQUEST_HOLD_OUT]; /* borrowed from argv */
     size_t n_hold_out;

@@ -1,7 +1,7 @@
 #!/bin/sh
 # test_resume_files.sh - ted4enc does not write over a checkpoint or a log unless it goes on from
-# there or is told to, and refuses, before it trains, two outputs of one name, an option without the
-# one that it belongs to, and "-" for a file. Prints lines as a cmocka program does; run by `make
+# there or is told to, and refuses, before it trains, two outputs of one name, options without the
+# one that they belong to, and "-" for a file. Prints lines as a cmocka program does; run by `make
 # test` from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
@@ -41,8 +41,8 @@ expect same_late 3 'ted4enc: --log and --stage1: both are n' \
     enc -o w.ted4 --log n --stage1 "../$(basename "$out")/n"
 
 # Options that would have no effect.
-expect idle_every 0 'ted4enc: note: --checkpoint-every: only with --checkpoint (see --help)' \
-    enc -o e.ted4 --checkpoint-every 60
+expect lonely_every 3 'ted4enc: --checkpoint-every: only with --checkpoint (see --help)' \
+    enc -o w.ted4 --checkpoint-every 60
 expect lonely_resume 3 'ted4enc: --resume: only with --checkpoint (see --help)' \
     enc -o w.ted4 --resume
 # Standard output takes none of these files.
