@@ -30,8 +30,8 @@ static outcome reference;  /* of an undisturbed run */
 
 /* ---- the program ---- */
 
-/* Small networks, one thread, no picture kept in memory, and a checkpoint after every step. The log
- * has a line for every 250 steps. */
+/* Small networks, one thread, and no picture kept in memory. The log has a line for every 250
+ * steps. */
 static const char *const usual[] = { "ted4enc",
                                      "scene",
                                      "-f",
@@ -42,8 +42,6 @@ static const char *const usual[] = { "ted4enc",
                                      "--iterations",
                                      "700,200",
                                      "--cache",
-                                     "0",
-                                     "--checkpoint-every",
                                      "0",
                                      "--set",
                                      "offsets=4",
@@ -77,8 +75,14 @@ static const char *const usual[] = { "ted4enc",
                                      "motion_worth=0.02",
                                      NULL };
 
-/* Becomes the program, in the child process. Files cannot grow beyond limit bytes (0: any size);
- * the write fails instead of raising a signal. */
+static inline int has_checkpoint(const char *arguments)
+{
+    return strstr(arguments, "--checkpoint ") != NULL;
+}
+
+/* Becomes the program, in the child process; a checkpoint is written after every step, unless the
+ * arguments say when. Files cannot grow beyond limit bytes (0: any size); the write fails instead
+ * of raising a signal. */
 static inline void become_program(const char *arguments, rlim_t limit)
 {
     char path[1024], words[1024];
@@ -87,6 +91,10 @@ static inline void become_program(const char *arguments, rlim_t limit)
 
     for (; usual[n] != NULL; n++)
         argv[n] = usual[n];
+    if (has_checkpoint(arguments)) {
+        argv[n++] = "--checkpoint-every";
+        argv[n++] = "0";
+    }
     snprintf(words, sizeof words, "%s", arguments);
     for (char *w = strtok(words, " "); w != NULL && n < MOST_WORDS - 1; w = strtok(NULL, " "))
         argv[n++] = w;
@@ -240,7 +248,8 @@ static inline void run_calmly(const char *arguments)
 {
     char words[512];
 
-    snprintf(words, sizeof words, "-o out/x.ted4 --checkpoint-every 60 %s", arguments);
+    snprintf(words, sizeof words, "-o out/x.ted4 %s%s",
+             has_checkpoint(arguments) ? "--checkpoint-every 60 " : "", arguments);
     if (run(words, 0) != 0)
         expect_words("nothing at all");
 }

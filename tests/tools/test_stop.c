@@ -8,55 +8,21 @@
 #include "tool/leftovers.h"
 
 /* A probe at step 300, stage 2 from 1200 on, trials at 1305, the integer stage at 1760. */
-static const char *const options[] = { "ted4enc",
-                                       "scene",
-                                       "-o",
-                                       "out/x.ted4",
-                                       "-f",
-                                       "-j1",
-                                       "--preset",
-                                       "draft",
-                                       "--iterations",
-                                       "1200,700",
-                                       "--checkpoint-every",
-                                       "86400",
-                                       "--log",
-                                       "out/l",
-                                       "--set",
-                                       "offsets=4",
-                                       "--set",
-                                       "feature=8",
-                                       "--set",
-                                       "phi=4",
-                                       "--set",
-                                       "bank_dim=8",
-                                       "--set",
-                                       "deform_width=8",
-                                       "--set",
-                                       "head_width=12",
-                                       "--set",
-                                       "hyper_width=8",
-                                       "--set",
-                                       "ar_width=8",
-                                       "--set",
-                                       "slices=2",
-                                       "--set",
-                                       "octaves=4",
-                                       "--set",
-                                       "init_anchors=150",
-                                       "--set",
-                                       "max_anchors=260",
-                                       "--set",
-                                       "grow_every=20",
-                                       "--set",
-                                       "probe=0.2",
-                                       "--set",
-                                       "activation=0" };
+static const char *const options[] = {
+    "ted4enc",  "scene",         "-o",           "out/x.ted4",       "-f",    "-j1",
+    "--preset", "draft",         "--iterations", "1200,700",         "--log", "out/l",
+    "--set",    "offsets=4",     "--set",        "feature=8",        "--set", "phi=4",
+    "--set",    "bank_dim=8",    "--set",        "deform_width=8",   "--set", "head_width=12",
+    "--set",    "hyper_width=8", "--set",        "ar_width=8",       "--set", "slices=2",
+    "--set",    "octaves=4",     "--set",        "init_anchors=150", "--set", "max_anchors=260",
+    "--set",    "grow_every=20", "--set",        "probe=0.2",        "--set", "activation=0"
+};
 enum { N_OPTIONS = (int)(sizeof options / sizeof options[0]) };
 
 static pid_t begin(const char *one, const char *two, const char *three)
 {
-    const char *argv[N_OPTIONS + 4] = { NULL };
+    const char *argv[N_OPTIONS + 6] = { NULL };
+    int n = N_OPTIONS;
     char path[1024];
     const pid_t child = fork();
 
@@ -64,9 +30,13 @@ static pid_t begin(const char *one, const char *two, const char *three)
     if (child > 0)
         return child;
     memcpy(argv, options, sizeof options);
-    argv[N_OPTIONS] = one;
-    argv[N_OPTIONS + 1] = two;
-    argv[N_OPTIONS + 2] = three;
+    if (one != NULL && strcmp(one, "--checkpoint") == 0) {
+        argv[n++] = "--checkpoint-every";
+        argv[n++] = "86400";
+    }
+    argv[n++] = one;
+    argv[n++] = two;
+    argv[n] = three;
 
     const int err = open(tiny_path(&folder, "err"), O_WRONLY | O_CREAT | O_TRUNC, 0666);
 
