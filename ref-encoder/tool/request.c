@@ -314,7 +314,7 @@ static int take_file(int option, const char *value, const char **to)
 static int take_later(pending *p, int option, const char *value)
 {
     if (p->n_sets == MAX_SETS)
-        return complain("too many --set");
+        return complain("too many training options");
     p->set[p->n_sets].option = option;
     p->set[p->n_sets++].value = value;
     return TED4_REQUEST_GO;
@@ -453,13 +453,6 @@ static int apply(ted4_request *r, const pending *p)
     return status;
 }
 
-/* Refuses an option that would be without effect: whoever wrote it expects something of it. */
-static int lonely(const char *option, const char *why)
-{
-    fprintf(stderr, "ted4enc: %s: %s (see --help)\n", option, why);
-    return TED4_REQUEST_BAD;
-}
-
 /* Checks that what was given goes together. */
 static int check(const ted4_request *r, const pending *p)
 {
@@ -474,9 +467,9 @@ static int check(const ted4_request *r, const pending *p)
     if (r->out != NULL && !ted4_has_suffix(r->out, ".ted4"))
         return bad_output(r->out);
     if (r->resume && r->checkpoint == NULL)
-        return lonely("--resume", "only with --checkpoint");
+        return complain("--resume: only with --checkpoint (see --help)");
     if (r->checkpoint_every >= 0 && r->checkpoint == NULL)
-        return lonely("--checkpoint-every", "only with --checkpoint");
+        return complain("--checkpoint-every: only with --checkpoint (see --help)");
     return TED4_REQUEST_GO;
 }
 
