@@ -5,7 +5,7 @@
 #     g = scene.frame(10, camera=(0, 0, -4))
 #     g.mean.shape                                  # (number of Gaussians, 3)
 #
-# The library is searched for in TED4_LIBRARY, then as the system does. One file; depends on numpy.
+# TED4_LIBRARY names the library; without it, the system finds it. One file; depends on numpy.
 # SPDX-License-Identifier: BSD-2-Clause
 """Decoder of TED4, compressed dynamic scenes of 3D Gaussians."""
 import ctypes as c
