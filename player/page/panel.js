@@ -27,12 +27,12 @@ function sceneRows({ bytes, info, meta }) {
   return [
     ...said,
     ["File", `${count(bytes.length)} bytes`],
-    ["Anchors", `${count(info.anchors)}, ${count(info.moving)} move`],
+    ["Anchors", `${count(info.anchors)}, ${count(info.moving)} moving`],
     ["Gaussians", count(info.gaussians)],
     ["Frames", `${count(info.frames)}, ${info.rate} per second`],
     ["Motion", info.motion],
     ["Activation", info.activation ? "yes" : "no"],
-    ["Depends on view", info.view],
+    ["View dependence", info.view],
     ["Level", info.level],
     ["Hash", info.hash],
   ];
@@ -41,7 +41,7 @@ function sceneRows({ bytes, info, meta }) {
 export function showFile(file) {
   at("title").textContent = file.meta.get("title") ?? file.name;
   document.title = `${at("title").textContent} - TED4 player`;
-  at("verdict").textContent = "Valid: strict decoding, hash of the scene checked.";
+  at("verdict").textContent = "Valid: strictly decoded, scene hash checked.";
   terms("facts", sceneRows(file));
   table("by-chunk", file.chunks.map(({ type, count: n, bytes }) =>
     [n > 1 ? `${type} (${n})` : type, count(bytes)]));
@@ -58,10 +58,10 @@ export function showStatistics({ file, statistics, sorting }, evaluated, drawn) 
   terms("statistics", [
     ["Decoding", `${file.milliseconds.toFixed(0)} ms`],
     ["First picture", `${statistics.firstPicture.toFixed(0)} ms`],
-    ["Evaluating a time", `${statistics.evaluate.toFixed(1)} ms`],
+    ["Evaluation", `${statistics.evaluate.toFixed(1)} ms`],
     ["Sorting", `${sorting.toFixed(1)} ms`],
     ["Gaussians", count(file.info.gaussians)],
-    ["Times per second", count(evaluated)],
-    ["Pictures per second", count(drawn)],
+    ["Evaluations per second", count(evaluated)],
+    ["Frames drawn per second", count(drawn)],
   ]);
 }

@@ -38,7 +38,7 @@ export class Ted4Client {
       else waiting?.resolve(value);
     };
     // A worker whose script cannot be fetched says nothing of it.
-    worker.onerror = (e) => this.#finish(e.message || "the worker does not start");
+    worker.onerror = (e) => this.#finish(e.message || "the worker failed to start");
   }
 
   #finish(reason) {

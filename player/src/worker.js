@@ -25,7 +25,7 @@ const actions = {
     return Decoder.load(source).then((d) => { decoder = d; });
   },
   open({ scene, bytes, options }) {
-    if (decoder === null) throw new Error("no decoder: load() comes before open()");
+    if (decoder === null) throw new Error("no decoder: call load() before open()");
     const start = performance.now();
     const opened = decoder.open(bytes, options);
     scenes.set(scene, opened);

@@ -91,7 +91,7 @@ test("bytes of a Buffer are copied, and those of an ArrayBuffer are gone afterwa
 
 test("before load, and after close, the error says so", async () => {
   const early = new Ted4Client(new BrowserWorker());
-  await assert.rejects(early.open(copy()), { message: "no decoder: load() comes before open()" });
+  await assert.rejects(early.open(copy()), { message: "no decoder: call load() before open()" });
   early.terminate();
   await withClient(async (client) => {
     const scene = await client.open(copy());
@@ -108,7 +108,7 @@ test("calls under way when the worker is terminated, and later ones, are rejecte
 });
 
 test("a worker that fails rejects all calls, with a reason", async () => {
-  for (const [event, message] of [[{}, "the worker does not start"],
+  for (const [event, message] of [[{}, "the worker failed to start"],
     [{ message: "SyntaxError" }, "SyntaxError"]]) {
     const worker = new SilentWorker(), client = new Ted4Client(worker), loading = client.load(wasm);
     worker.onerror(event);
