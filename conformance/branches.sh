@@ -1,7 +1,8 @@
 #!/bin/sh
-# Branch outcomes of norm/ and read/ by gcov, both of every condition, as a table: file, function,
-# line, number of the outcome (gcov's) on that line, 1 if it was taken, the line's text. Needs a
-# build with --coverage that something has run in. What becomes of the table: branches.awk.
+# Prints the branch outcomes of norm/ and read/ as gcov counts them, both of every condition, as a
+# table: file, function, line, gcov's number of the outcome on that line, 1 if it was taken, the
+# text of the line. Needs a build with --coverage whose programs have run. branches.awk reads the
+# table.
 #     conformance/branches.sh BUILD >TABLE
 # SPDX-License-Identifier: BSD-2-Clause
 export LC_ALL=C

@@ -1,7 +1,7 @@
 #!/bin/sh
-# The trained streams of the suite (vectors/content): the project's own scenes, small networks,
-# three lambdas. Training gives the same bytes for any number of threads, but another machine's
-# vector units and libm may give others; so the files are kept, and this says how they came about.
+# Makes the trained streams of the suite (vectors/content): the project's own scenes, small
+# networks, three lambdas. Another version of the encoder, or a machine without fused multiply-add,
+# makes other bytes; so the files are stored, and this script documents how they were made.
 #     conformance/content.sh FOLDER      writes FOLDER/CNT-*.ted4; TED4_BUILD: programs (build)
 set -e
 out=$1

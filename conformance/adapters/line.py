@@ -5,16 +5,16 @@ serial port.
 
     ted4conf run --decoder 'python3 conformance/adapters/line.py CMD'
 
-CMD is run as `CMD` (who are you?) and as `CMD FILE [NUM DEN X Y Z]...` (a file, and queries); what
-it prints on stdout is looked at only where a line begins with "TED4-1 ":
+CMD is run as `CMD` (to name itself) and as `CMD FILE [NUM DEN X Y Z]...` (a file, and queries). Of
+what it prints on stdout, only lines that begin with "TED4-1 " count:
 
     TED4-1 decoder NAME VERSION LEVEL CLASS     LEVEL: the highest; CLASS: X, or - (no T5)
-    TED4-1 valid T3 HEX                         a line a tier; T5: a line a query, in order, with
-                                                HEX or why it has no result
+    TED4-1 valid T3 HEX                         one line per tier; T5: one line per query, in
+                                                order, with HEX or why it has no result
     TED4-1 invalid ID OFFSET
     TED4-1 unsupported ID OFFSET
     TED4-1 limit ID
-    TED4-1 end                                  without it the decoder has not ended well
+    TED4-1 end                                  the last line; without it there is no answer
 
 HEX: 32 digits of XXH3-128, or 64 of SHA-256.
 """
@@ -27,7 +27,7 @@ MARK = "TED4-1 "
 
 
 class NoAnswer(Exception):
-    """What the decoder said is no answer."""
+    """The decoder's output is not an answer."""
 
 
 def lines(command, arguments):

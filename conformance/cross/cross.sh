@@ -1,18 +1,19 @@
 #!/bin/sh
-# cross.sh - our decoder, built in every way of builds.txt, against the conformance suite:
-# results.csv and ../CROSS.md. `make cross`.
+# cross.sh - runs the conformance suite on our decoder, built in every way that builds.txt lists,
+# and writes results.csv and ../CROSS.md. `make cross`.
 # Usage, from anywhere:  conformance/cross/cross.sh [--list | --report] [PATTERN...]
 #     PATTERN...   builds whose name fits one of these shell patterns; all builds without any
-#     --list       says of each build what state it is in, and does nothing
+#     --list       only says what state each build is in
 #     --report     only writes CROSS.md
-# A build is made and run when results.csv has no row of it that passed with these sources, this
+# A build is made and run unless results.csv has a row of it that passed with these sources, this
 # line of builds.txt and this compiler; comments and spacing of sources do not count. The judge
-# counts only for builds that are asked everything by the contract: two hashes say what a build
-# answers, so that one build judged again speaks for all that have the same. A build whose compiler
-# or runner is missing is skipped, which is said; a row that it has of the same sources stays. May
-# be killed at any moment and called again, and several times at once for different compilers. Exit
-# code: 0, or 1: a build fails, or two of them disagree, or too few have passed (12, as skipped ones
-# prove nothing; 1 with a PATTERN); 3: wrong usage, no suite, no libraries.
+# counts only for builds that are asked everything by the contract: two hashes represent the answers
+# of a build, so one build that is judged again stands for all with the same hashes. A build whose
+# compiler or runner is missing is skipped and reported; a row that it has of the same sources
+# stays. The script may be killed at any moment and called again, and may run several times at once
+# for different compilers. Exit code: 0; 1 if a build fails, two of them disagree, or too few have
+# passed (fewer than 12, since skipped ones prove nothing; fewer than 1 with a PATTERN); 3 for wrong
+# usage, no suite, no libraries.
 # Environment: TED4_BUILD (build: where ted4conf is; it works in TED4_BUILD/cross), TED4_RESULTS
 # (conformance: where cross/results.csv and CROSS.md are), TED4_TABLE
 # (conformance/cross/builds.txt).
@@ -24,8 +25,8 @@ columns=$columns,contract_vectors,contract_passed,seconds,verdict
 fields="name class compiler flags link runner again contract packages"
 . "$(dirname "$0")/../../bench/builds.sh"
 
-# enter: settles folders, goes into a copy of what builds are made from, so that a source edited
-# meanwhile does no harm, and sees that suite and libraries are there
+# enter: sets the folders, goes into a copy of what builds are made from, so that editing a source
+# meanwhile does no harm, and makes sure that suite and libraries are there
 enter() {
     cd "$(dirname "$0")/../.." || exit 3
     root=$(pwd)
@@ -49,7 +50,7 @@ enter() {
         die "no suite, or no sources of zlib, Jansson and xxHash from Debian"
 }
 
-# what_from: the sources, and the flags that the Makefile gives them
+# what_from: sets the sources, and the flags that the Makefile gives them
 what_from() {
     strict=$(sed -n 's/^STRICT *= *//p' Makefile)
     avx512=$(sed -n 's/^AVX512 *= *//p' Makefile)
@@ -68,14 +69,15 @@ what_from() {
         for f in contract tier_hash record sha256 cli json_file json_string; do
             echo "ref-decoder/tool/$f.h"
         done)
-    # Of zlib what works on bytes in memory.
+    # The files of zlib that work on bytes in memory.
     zlib="adler32 compress crc32 deflate inffast inflate inftrees trees zutil"
-    # Wine keeps to itself, says nothing, and asks for nothing.
+    # Wine has a folder of its own, prints nothing, and asks for nothing.
     WINEPREFIX=$work/wine WINEDEBUG=-all WINEDLLOVERRIDES='mscoree,mshtml='
     export WINEPREFIX WINEDEBUG WINEDLLOVERRIDES
 }
 
-# suite_key FOLDER: of the suite's manifest and descriptors; the manifest has hashes of the files
+# suite_key FOLDER: hash of the suite's manifest and descriptors; the manifest has hashes of the
+# files
 suite_key() {
     {
         cat "$1/SUITE.json"
@@ -83,7 +85,7 @@ suite_key() {
     } | short_hash
 }
 
-# sources_key: everything that the program is made from, and what it is asked
+# sources_key: hash of everything that the program is made from, and of what it is asked
 sources_key() {
     {
         awk -f bench/sources.awk $decoder $program ref-decoder/ted4.h ref-decoder/base/*.[hd]* \
@@ -105,14 +107,14 @@ missing() {
     missing_command ${compiler%% *} ${runner%% *}
 }
 
-# fetch: Debian's sources of zlib, Jansson and xxHash in $work/libraries, without touching this
-# system
+# fetch: puts Debian's sources of zlib, Jansson and xxHash into $work/libraries, without changing
+# this system
 fetch() {
     [ -e "$work/libraries/ready" ] && return
     rm -rf "$work/libraries"
     a=$work/libraries/apt
     mkdir -p "$a/state/lists/partial" "$a/cache/archives/partial" "$a/parts" || return 1
-    # The system's own Debian sources, asked for source packages.
+    # The system's own package sources, for source packages.
     for list in /etc/apt/sources.list.d/debian.sources /etc/apt/sources.list; do
         [ -s "$list" ] && sed 's/^Types: deb$/Types: deb-src/; s/^deb /deb-src /' "$list" \
             >"$a/parts/$(basename "$list" .list).${list##*.}"
@@ -140,7 +142,7 @@ fetch() {
     ) && touch "$work/libraries/ready"
 }
 
-# prepare: the suite with the files that are made on demand, in $suite
+# prepare: makes the suite with the files that are made on demand, in $suite
 prepare() {
     [ ! -e "$suite" ] || return 0
     [ -x "$build/ted4conf" ] || die "$build/ted4conf is missing: make cross"
@@ -158,7 +160,7 @@ prepare() {
     mv "$part/suite" "$suite" && rm -rf "$part"
 }
 
-# objects FOLDER FLAGS SOURCE...: compiled there, one object each
+# objects FOLDER FLAGS SOURCE...: compiles each source to an object in the folder
 objects() {
     mkdir -p "$1" || return 1
     folder=$1 options=$2
@@ -169,7 +171,7 @@ objects() {
     done
 }
 
-# make_libraries: once for each compiler, as a distribution would compile them, in $others
+# make_libraries: compiles the libraries once for each compiler, as a distribution would, in $others
 make_libraries() {
     others=$work/libraries/made-$(echo "$compiler $(version)" | short_hash) from=$work/libraries
     [ ! -e "$others/ready" ] || return 0
@@ -179,7 +181,7 @@ make_libraries() {
         objects "$others/xxhash" "-O2 -w" "$from/xxhash/xxhash.c" && touch "$others/ready"
 }
 
-# compile: $here/program
+# compile: makes $here/program
 compile() {
     here=$work/builds/$name
     rm -rf "$here"
@@ -207,7 +209,7 @@ compile() {
     [ ! -e "$here/program.exe" ] || mv "$here/program.exe" "$here/program"
 }
 
-# judge FILE [NAME=VALUE]: the whole suite in one process; what it prints in FILE
+# judge FILE [NAME=VALUE]: runs the whole suite in one process, with its output in FILE
 judge() {
     env ${2:-NOTHING=} $runner "$here/program" "$suite" 2>"$1.stderr" | tr -d '\r' >"$1"
     grep -q '^tier-e ' "$1" ||
@@ -218,7 +220,7 @@ judge() {
     return 1
 }
 
-# by_contract: the suite, or few of it, by processes of their own; sets contract_vectors,
+# by_contract: runs the suite, or few of its vectors, in a process each; sets contract_vectors and
 # contract_passed
 by_contract() {
     list="--list conformance/lists/few.txt"
@@ -272,7 +274,7 @@ make_row() {
     rm -rf "$here"
 }
 
-# result_line: the build's line of CROSS.md
+# result_line: prints the build's line of CROSS.md
 result_line() {
     state
     tell_state "$row_verdict" "stale: $row_verdict with other sources, suite, flags or compiler"
@@ -283,7 +285,7 @@ result_line() {
               start($7) " | " start($8) " | " $11 " | " said " |" }'
 }
 
-# summary: of all rows in $own/counted
+# summary: prints what all rows in $own/counted say together
 summary() {
     awk -F, '$12 == "passed" { n++; if ($4 == "X") x++ }
         $7 != "" && !($7 in e) { e[$7]; n_e++; one_e = $7 }
@@ -295,7 +297,7 @@ summary() {
                   " passing builds that claim it." : n_c + 0 " different hashes.") }' "$own/counted"
 }
 
-# agree: after a summary: no build fails, no two disagree, and enough have passed
+# agree: prints the summary; succeeds if no build fails, no two disagree, and enough have passed
 agree() {
     summary
     least=12 passed=$(cut -d, -f12 "$own/counted" | grep -cx passed)

@@ -1,10 +1,10 @@
 #!/bin/sh
-# Decoders that do not conform, each in its own way: ted4conf run has to see through all of them.
+# Decoders that do not conform, each in its own way: ted4conf run has to detect all of them.
 #     bad_decoder.sh WAY ARGUMENTS OF THE CONTRACT...       TED4DEC: a decoder that does conform
 way=$1
 shift
 good() { "$TED4DEC" "$@"; }
-# declining FEATURES ARGUMENT...: good, but declines the features of a list in JSON
+# declining FEATURES ARGUMENT...: conforms, but declines the features in a JSON list
 declining() { features=$1; shift; good "$@" | sed "s/\"declines\":\[\]/\"declines\":[$features]/"; }
 valid='{"result":"valid","tiers":{}}' limit='{"result":"limit","error":"limit.memory"}'
 case $way in

@@ -1,7 +1,7 @@
 #!/bin/sh
-# Encoders that do not conform, each in its own way: ted4conf encode has to see through all of them.
+# Encoders that do not conform, each in its own way: ted4conf encode has to detect all of them.
 #     bad_encoder.sh WAY ARGUMENTS OF THE CONTRACT...
-# MADE: a file, and MADE.json the answer of the encoder that made it.
+# MADE: a file; MADE.json: the answer of the encoder that made it.
 way=$1
 shift
 while [ $# -gt 0 ]; do

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # class_t.py - decoders that claim class T, some of them wrongly: the answers and records of
-# $TED4DEC, changed by so much as WAY says.
+# $TED4DEC, changed by as much as WAY says.
 #     class_t.py WAY ARGUMENTS OF THE CONTRACT...
-# Thresholds of a file are those that conformance/tolerance/thresholds.csv has for the vector with
-# its hash. Run in the project's root, by bad_decoder.sh.
+# The thresholds of a file are those of the vector with its hash in
+# conformance/tolerance/thresholds.csv. Run in the project's root, by bad_decoder.sh.
 # SPDX-License-Identifier: BSD-2-Clause
 import csv
 import hashlib
@@ -13,12 +13,12 @@ import struct
 import subprocess
 import sys
 
-# First number of a record's group, and how many.
+# For each group of a record: its first number, and how many it has.
 GROUPS = {"scale": (3, 3), "rotation": (6, 4), "opacity": (10, 1), "colour": (11, 3)}
 
 
 def thresholds(path):
-    """Of the queries of a file: {query: {group: (peak, rms)}}"""
+    """For the queries of a file: {query: {group: (peak, rms)}}"""
     with open(path, "rb") as f:
         sha = hashlib.sha256(f.read()).hexdigest()
     with open("conformance/SUITE.json", encoding="utf-8") as f:
@@ -30,7 +30,7 @@ def thresholds(path):
 
 
 def shift(record, group, amount):
-    """A record whose deviation in a group is amount, or next to it."""
+    """A record whose deviation in a group is amount, or close to it."""
     first, count = GROUPS[group]
     if group == "scale":
         record[first + 1] *= 1 + amount
@@ -60,7 +60,7 @@ def change(way, records, bound):
 
 
 def answer_records(way, path, bound):
-    """Changes the file of a query; what the answer has to say of it."""
+    """Changes the file of a query; returns what the answer has to say about it."""
     with open(path, "rb") as f:
         records = [list(r) for r in struct.iter_unpack("<14f", f.read())]
     change(way, records, bound)

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-2-Clause
-"""The program of annex L judges the zlib streams of the vectors as their descriptors say; and
-without one of its checks, or with it misread, it judges some stream otherwise. The checks that no
-stream tells from others are those of GAPS.md. Speaks as cmocka programs do; run in the project's
-root, by tests/docs/test_inflate_checks.sh. CC: the compiler."""
+"""Tests that the program of annex L judges the zlib streams of the vectors as their descriptors
+say, and that without one of its checks, or with it misread, it judges some stream otherwise. The
+exceptions, which no stream shows, are those of GAPS.md. Prints lines as a cmocka program does; run
+in the project's root, by tests/docs/test_inflate_checks.sh. CC: the compiler."""
 
 import ctypes
 import glob
@@ -112,8 +112,8 @@ UNTOLD = (
 
 
 def program():
-    """The text of annex L. Besides, sum is below 0 when the last code was over-full, above 0 when
-    it was incomplete, and a code knows whether it is alone, one of length 1."""
+    """The text of annex L, with two additions: sum is below 0 if the last code was over-subscribed,
+    above 0 if it was incomplete; and a code knows whether it is alone, one of length 1."""
     with open(ANNEX, encoding="utf-8") as f:
         text = "".join(re.findall(r"^```c\n(.*?)^```$", f.read(), re.DOTALL | re.MULTILINE))
     text = text.replace("struct prefix_code {\n",
@@ -145,7 +145,7 @@ def streams():
 
 
 def verdicts(text, folder, all_streams):
-    """Which streams a program judges otherwise than their descriptors say."""
+    """The streams that a program judges otherwise than their descriptors say."""
     verdicts.n += 1
     source, library = f"{folder}/{verdicts.n}.c", f"{folder}/{verdicts.n}.so"
     with open(source, "w", encoding="utf-8") as f:

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-# line_decoder.py - a decoder of the line protocol (conformance/adapters/line.py), as a board would
-# be that has booted: $TED4DEC in disguise.
+# line_decoder.py - a decoder that speaks the line protocol (conformance/adapters/line.py), as a
+# board does that has booted: a wrapper of $TED4DEC.
 #     line_decoder.py WAY [FILE [NUM DEN X Y Z]...]      WAY: good, or how its lines are wrong
 # SPDX-License-Identifier: BSD-2-Clause
 import json

@@ -1,10 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-2-Clause
-"""What conformance/schema says, held against what is there: manifest, every descriptor,
-capabilities and answers of our decoders, and the results of `ted4conf run` for a decoder that
-conforms and one that does not, as JSON, JUnit and HTML; and what all files add up to. Speaks as
-cmocka programs do; run in the project's root, by tests/tools/test_suite_schema.sh. TED4_BUILD: the
-build folder.
+"""Checks against conformance/schema: the manifest, every descriptor, capabilities and answers of
+our decoders, and the results of `ted4conf run`, as JSON, JUnit and HTML, for a decoder that
+conforms and one that does not; also the total size of all files. Prints lines as a cmocka program
+does; run in the project's root, by tests/tools/test_suite_schema.sh. TED4_BUILD: the build folder.
 """
 
 import csv
@@ -40,14 +39,14 @@ def load(path):
 
 
 class Schema:
-    """The keywords of JSON Schema draft 7 that the files of conformance/schema use; another one is
-    an error."""
+    """The keywords of JSON Schema draft 7 that the files of conformance/schema use; any other is an
+    error."""
 
     def __init__(self, name):
         self.name, self.root = name, load(os.path.join(SCHEMAS, name))
 
     def check(self, value):
-        """Where and why the value is not what the schema says; [] if it is."""
+        """Where and why the value violates the schema; [] if it does not."""
         return list(self.errors(value, self.root, "$"))
 
     def errors(self, value, schema, at):
@@ -309,7 +308,7 @@ def one_suite(folder, changed, outcome):
 
 
 def changed_suites():
-    """A vector that is gone, or another one than the manifest says, is missing, whatever its
+    """A vector that is gone, or is not the one in the manifest, counts as missing, whatever its
     descriptor says."""
     second = "WRK-masks"
 
@@ -354,8 +353,8 @@ def changed_suites():
 
 
 def thresholds():
-    """Powers of two by their exponents; what the root of the mean square may be is never above what
-    the largest may be (R-TOL-003)."""
+    """Thresholds are exponents of powers of two; that of the root mean square never exceeds that of
+    the largest deviation (R-TOL-003)."""
     rows = list(csv.DictReader(
         open(os.path.join(SUITE, "tolerance", "thresholds.csv"), encoding="ascii")))
     require(len(rows) > 20, "thresholds.csv: too few rows")

@@ -1,6 +1,6 @@
 #!/bin/sh
-# The lines of thresholds.csv: `sh conformance/tolerance/table.sh build/ted4tolerance [ID...]`;
-# without ids, the vectors of the folders below.
+# Prints the lines of thresholds.csv: `sh conformance/tolerance/table.sh build/ted4tolerance
+# [ID...]`; without ids, for the vectors of the folders below.
 export LC_ALL=C
 program=$(realpath "$1")
 shift
