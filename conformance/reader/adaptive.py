@@ -22,7 +22,7 @@ class Adaptive:
 
 
 class Contexts(dict):
-    """Contexts by name, made where they are first needed."""
+    """Contexts by name, created when first needed."""
 
     def __missing__(self, name):
         self[name] = Adaptive()
@@ -93,7 +93,7 @@ def decode_integer(rest, contexts, expected):
 
 
 def decode_unit(rest, contexts, exponent, n):
-    """The f32 patterns of n values; the infinite one where R-NET-012 is broken."""
+    """The f32 patterns of n values; infinity for a value that breaks R-NET-012."""
     lengths, patterns = [0, 0], []
     for _ in range(n):
         k = decode_integer(rest, contexts, (lengths[-2] + lengths[-1] + 1) // 2)

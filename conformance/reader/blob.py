@@ -11,7 +11,7 @@ from verdict import Refusal, require
 
 
 class Blob:
-    """`patterns` of the values in order. offset(i) is where an error of value i is reported
+    """`patterns`: those of the values, in order. offset(i): where an error of value i is reported
     (chapter 14)."""
 
     def __init__(self, payload, name, count, groups=()):
@@ -53,10 +53,10 @@ class Blob:
 
 
 def inflate(stream, size, offset):
-    """R-NET-001. Asking for one byte more than `size` lets zlib reach the stream's end and its
-    check sum, and never make more than that.
+    """R-NET-001. Asking for one byte more than `size` lets zlib reach the end of the stream and its
+    checksum, but never produce more than that.
 
-    The inflate of zlib answers every point of R-NET-007 as that rule does; test_deflate.py has
+    The inflate of zlib decides every point of R-NET-007 as that rule does; test_deflate.py has
     streams for each.
     """
     inflater = zlib.decompressobj()
@@ -70,7 +70,7 @@ def inflate(stream, size, offset):
 
 
 def unshuffle(planes):
-    """First byte 0 of all values, then byte 1 of all, and so on: to the values' patterns."""
+    """The patterns of values that are stored as byte 0 of all, then byte 1 of all, and so on."""
     n = len(planes) // 4
     values = bytearray(4 * n)
     for i in range(4):

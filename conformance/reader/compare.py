@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-2-Clause
-"""The reader and another decoder, side by side on streams that neither has seen: drawn ones
+"""Compares the reader with another decoder on streams that neither has seen: random ones
 (sample.py), valid and broken.
 
     compare.py --decoder 'CMD' [--seeds FIRST:END] [--broken N] [--keep FOLDER] [FILE.ted4 ...]
 
-CMD speaks the contract of ../README.md. Odd seeds give streams of profile Compact. Of each seed (or
-file) the whole stream is compared in T0 to T5, then N broken ones in verdict, identifier and
-offset. A difference is printed and its stream kept in FOLDER (default: here). Exit status 1 when
-there was one.
+CMD follows the contract of ../README.md. Odd seeds give streams of profile Compact. For each seed
+(or file), T0 to T5 of the whole stream are compared, then verdict, identifier and offset of N
+broken ones. A difference is printed and its stream stored in FOLDER (default: here). The exit
+status is 1 if there was one.
 """
 
 import argparse
@@ -66,7 +66,7 @@ def keep(name, data):
 
 
 def agree(command, folder, data, whole):
-    """Do both decoders say the same of these bytes?"""
+    """Whether both decoders give the same answer for these bytes."""
     path, queries = os.path.join(folder, "s.ted4"), os.path.join(folder, "q.json")
     with open(path, "wb") as file:
         file.write(data)
@@ -86,8 +86,8 @@ def agree(command, folder, data, whole):
 
 
 def broken(rng, data):
-    """One or two changes, hashes of chunks repaired after most of them, so that they reach pass
-    2."""
+    """One or two changes. After most of them the hashes of chunks are repaired, so that the stream
+    reaches pass 2."""
     chunks, at = [], 12
     while at < len(data):
         flags, size = struct.unpack_from("<II", data, at + 4)
@@ -106,8 +106,8 @@ def broken(rng, data):
 
 
 def change(rng, chunks):
-    """A change of one payload byte most of the time; else of a payload's size, of flags, of the
-    list of chunks."""
+    """Most of the time a change of one payload byte; otherwise of a payload's size, of flags, or of
+    the list of chunks."""
     i = rng.randrange(len(chunks))
     payload, way = chunks[i][1], rng.random()
     if way < 0.8 and payload:

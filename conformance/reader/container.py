@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-2-Clause
-"""Pass 1 (5.3, R-CON-010): file header, file size, chunk frames, hashes and order. Nothing of a
-payload is looked at."""
+"""Pass 1 (5.3, R-CON-010): file header, file size, chunk frames, hashes and order. Payloads are not
+parsed."""
 
 from collections import namedtuple
 
@@ -13,7 +13,7 @@ FILE_HEADER = 12                    # bytes of 5.1
 FRAME = 12                          # type, flags, size
 CRITICAL, SAFE_TO_COPY = 1, 2
 
-# What may follow what (R-CON-003); ancillary chunks may lie anywhere behind HEAD.
+# What may follow what (R-CON-003); ancillary chunks may stand anywhere after HEAD.
 FOLLOWS = {None: ("HEAD",), "HEAD": ("NETE",), "NETE": ("NETR",), "NETR": ("BANK", "POSN"),
            "BANK": ("POSN",),
            "POSN": ("TILE",), "TILE": ("TILE", "ENDS")}
@@ -24,7 +24,7 @@ Chunk = namedtuple("Chunk", "type start begin end")
 
 
 def pass_one(data):
-    """The level and the list of chunks of a file whose container is right."""
+    """The level and the list of chunks of a file whose container is valid."""
     level = file_header(data)
     chunks, last, at = [], None, FILE_HEADER
     while last != "ENDS":
@@ -38,8 +38,8 @@ def pass_one(data):
 
 
 def file_header(data):
-    """5.1, R-CON-001; each element is judged when its bytes are there. Then the file size, which
-    breaks its bound at `level`."""
+    """5.1, R-CON-001; each element is judged if its bytes are present. Then the file size; if it
+    exceeds its bound, the error is at `level`."""
     require(len(data) >= 8, "con.truncated", len(data))
     require(data[:8] == MAGIC, "con.magic", 0)
     require(len(data) > 8, "con.truncated", len(data))
@@ -53,7 +53,7 @@ def file_header(data):
 
 
 def frame(data, at):
-    """The chunk at `at` when it lies in the file and its hash is right (R-CON-002)."""
+    """The chunk at `at`, if it lies in the file and its hash is right (R-CON-002)."""
     require(len(data) - at >= FRAME, "con.truncated", len(data))
     begin = at + FRAME
     end = begin + int.from_bytes(data[at + 8:at + 12], "little")
@@ -82,9 +82,9 @@ def judge(data, chunk, last):
 
 
 def walk_chunks(chunks, has_bank, n_tiles):
-    """The chunks in order, for pass 2, which judges what HEAD alone decides (R-CON-010): is BANK
-    there, and how many TILE. The walk ends with con.chunk-order at the first known chunk that
-    stands where another should.
+    """The chunks in order, for pass 2, which judges what depends on HEAD (R-CON-010): whether BANK
+    is present, and the number of TILE. The walk ends with con.chunk-order at the first known chunk
+    that stands where another should.
     """
     tiles = 0
     for chunk in chunks:

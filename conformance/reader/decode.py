@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-2-Clause
 """The decision procedure: a byte string to a Model, or a Refusal (R-DEC-001, R-ERR-001 to 004).
 
-Everything is judged in order of passes, then of offsets; where a rule is reported at an earlier
-byte than where it is found, it is judged before anything between the two. So the first Refusal
+Everything is judged in order of passes, then of offsets; a violation that is reported at an earlier
+byte than where it is detected is judged before anything between the two. So the first Refusal
 raised is the one to report.
 """
 

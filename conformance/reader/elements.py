@@ -46,7 +46,7 @@ class Payload:
         return int.from_bytes(self.data[start:self.at], "little")
 
     def entries(self, name, width, count):
-        """An array of unsigned numbers, one after the other as (offset, number), so that those
+        """An array of unsigned numbers, yielded one by one as (offset, number), so that those
         before a missing one can be judged first (14.1)."""
         for _ in range(count):
             yield self.at, self.number(name, width)

@@ -27,8 +27,8 @@ def f32_patterns(values):
 
 
 def f32_round(value):
-    """The binary32 nearest to a binary64, ties to even, which is what packing does. The value must
-    not overflow."""
+    """The binary32 nearest to a binary64, ties to even, as packing rounds. The value must not
+    overflow."""
     return struct.unpack("<f", struct.pack("<f", value))[0]
 
 

@@ -13,7 +13,7 @@ LISTED = 64
 
 
 class Cumulative:
-    """cum(0) .. cum(R) for sigma index g and fraction fr of mu, computed when looked at."""
+    """cum(0) .. cum(R) for sigma index g and fraction fr of mu, computed on access."""
 
     def __init__(self, g, fr):
         self.inverse = INV[g]
@@ -53,7 +53,7 @@ MODELS = Models()
 
 def decode_symbols(substream, sigma, mu):
     """The symbols k of a whole substream, given sigma index and mu (Q8) of each in coded order.
-    Checks the coder's end."""
+    Checks the final state of the coder."""
     symbols = []
     for i, (g, m) in enumerate(zip(sigma, mu)):
         table = MODELS.get(g, m & 255)
@@ -75,8 +75,8 @@ def decode_symbols(substream, sigma, mu):
 
 
 def escape(substream, i):
-    """e: b bits 1, a bit 0, then the b low bits of e + 1 from the highest. A bit is 0 in the low
-    half of the slots."""
+    """e, coded as b bits 1, a bit 0, then the b low bits of e + 1 from the highest. A bit is 0 in
+    the low half of the slots."""
     b = 0
     while not substream.bit(i, 32768):          # Substream.bit calls the low half 1
         b += 1

@@ -53,8 +53,8 @@ LEVELLED = {"n_anchors": "anchors", "n_offsets": "offsets", "bank_rows": "frames
 
 
 def read_header(payload, level, file_bytes):
-    """The elements as attributes of one object, judged in order of offsets; at one element range,
-    combination, level (R-ERR-004)."""
+    """The elements as attributes of one object, judged in order of offsets; within an element in
+    the order range, combination, level (R-ERR-004)."""
     h = SimpleNamespace(level=level)
     for name, width, count, low, high in ELEMENTS:
         values = []

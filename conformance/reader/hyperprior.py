@@ -6,7 +6,7 @@ from collections import namedtuple
 from integers import clamp, round_shift
 from tables import SIN
 
-# Per type, one entry an anchor: step indices; mu[c] and s[c] are the lists of component c.
+# For one type, with one entry per anchor: step indices; mu[c] and s[c], the lists of component c.
 Prior = namedtuple("Prior", "step mu s")
 
 
@@ -28,7 +28,7 @@ def encode(coordinates, octaves):
 
 
 def evaluate_prior(network, h, fixed):
-    """The Prior of each present type for anchors whose X, Y, Z are in `fixed`, three an anchor."""
+    """The Prior of each present type for anchors whose X, Y, Z are in `fixed`, three per anchor."""
     if h.prior:
         rows = [network([])] * (len(fixed) // 3)
     else:

@@ -19,9 +19,9 @@ def memory_of_tier_e(h, file_bytes):
 
 
 def check_memory(h, file_bytes, bound):
-    """limit.memory when M_E is above `bound`, or, without one, when decoding in Python may need
-    more than DEFAULT bytes. What a file claims beyond what its bytes could hold is not counted
-    there: a deflated value takes at least 1/258 byte (RFC 1951: 258 bytes in two bits, four bytes a
+    """limit.memory if M_E is above `bound`, or, without one, if decoding in Python may need more
+    than DEFAULT bytes. Claims beyond what the bytes of the file could hold are not counted then: a
+    deflated value takes at least 1/258 byte (RFC 1951: 258 bytes in two bits, four bytes per
     value), an anchor 1/8 byte of POSN."""
     if bound is not None:
         require(memory_of_tier_e(h, file_bytes) <= bound, "limit.memory", None)
@@ -34,7 +34,7 @@ def check_memory(h, file_bytes, bound):
 
 
 def check_work(h, file_bytes, bound):
-    """R-LVL-008: limit.work when W_E of 13.4 is above `bound`; None: no bound."""
+    """R-LVL-008: limit.work if W_E of 13.4 is above `bound`; None: no bound."""
     symbols = h.n_anchors * (sum(dim for _, dim in h.types) + h.n_offsets + 1)
     steps = file_bytes + 4 * blob_values(h) + h.n_anchors * (
         products_of_tier_e(h) + hyperprior_shape(h)[-1]) + symbols

@@ -8,7 +8,7 @@ def default_masks(h, n):
 
 
 def mask_symbols(h, n):
-    """Bits in a tile of n anchors; 0 when there is no such substream."""
+    """Number of bits in a tile of n anchors; 0 if there is no such substream."""
     return n * (h.temporal_mask + h.n_offsets * h.offset_mask)
 
 
@@ -31,7 +31,7 @@ def decode_masks(substream, h, n, dynamic_prob, offset_prob):
 
 
 def offset_bits(substream, first, count, prob):
-    """The context is 1 while all bits so far are 1 (or there is none), 0 while all are 0, else
+    """The context: 1 while all bits so far are 1 (or there are none), 0 while all are 0, else
     2."""
     bits = []
     for k in range(count):

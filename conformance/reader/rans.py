@@ -17,11 +17,11 @@ def lane_count(n):
 
 
 class Substream:
-    """The coder of one substream of n symbols; every error of it is reported at its first byte
+    """The coder of one substream of n symbols; all its errors are reported at its first byte
     (chapter 14).
 
-    slot(i) shows where the state of symbol i's lane (R-ENT-010) points; advance(i, first, freq)
-    takes the symbol there.
+    slot(i) returns the slot to which the state of symbol i's lane (R-ENT-010) points; advance(i,
+    first, freq) consumes the symbol there.
     """
 
     def __init__(self, data, start, size, n):

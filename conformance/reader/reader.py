@@ -6,7 +6,8 @@
     reader.py --ted4-run FILE [--tiers T0,T1,...] [--queries FILE.json]
         [--knob max_alloc_total=BYTES] [--knob max_work=STEPS] [--dump DIR]
 
-One JSON document on standard output; every verdict on the file, also a refusal, is exit status 0.
+Prints one JSON document on standard output. The exit status is 0 for every verdict on the file,
+including a refusal.
 """
 
 import argparse
@@ -109,7 +110,7 @@ def read_queries(path):
 
 
 def tier(model, name, queries, folder):
-    """The answer for one tier: of T5 a list, an entry for each query."""
+    """The answer for one tier; for T5 a list with one entry per query."""
     if name != "T5":
         return describe(TIERS[name](model), name, folder)
     anchors = Anchors(model)

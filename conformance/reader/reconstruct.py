@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-2-Clause
-"""Reconstruction (chapter 11): the records of a query, T5. Every quantity is a list of vectors, one
-a component, over anchors."""
+"""Reconstruction (chapter 11): the records of a query, T5. Every quantity is a list of vectors over
+anchors, one per component."""
 
 from array import array
 from collections import namedtuple
@@ -18,7 +18,7 @@ FIELDS = 14                                         # binary32 values of a recor
 
 class Anchors:
     """All anchors of a model with their decoded values: value[type][c] is a vector over anchors, 0
-    where the component is absent. Made once for all queries."""
+    where the component is absent. Built once for all queries."""
 
     def __init__(self, model):
         h = self.header = model.header
@@ -87,7 +87,7 @@ def places(kept):
 
 
 def bank_at(bank, num, den):
-    """z of 11.2, a number for each column."""
+    """z of 11.2, one number per column."""
     g = num * (len(bank) - 1)
     i = g // den
     if i >= len(bank) - 1:
@@ -150,7 +150,7 @@ def length(vectors):
 
 
 def normalised(vectors, instead):
-    """Each vector through its length n, or `instead` when n < 2^-20."""
+    """Each vector divided by its length n, or `instead` if n < 2^-20."""
     n = length(vectors)
     short = [v < 2.0 ** -20 for v in n]
     n = [1.0 if is_short else v for is_short, v in zip(short, n)]

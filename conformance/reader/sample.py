@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-2-Clause
-"""Random valid streams for tests: a seed to the bytes of a file.
+"""Random valid streams for tests: makes the bytes of a file from a seed.
 
-Tiles are made by decoding random slots: that draws symbols from the model of the stream itself.
-Which symbols were taken is kept and coded backwards, so the decoder reads what was drawn. So all
-that a writer needs besides the decoder is chunks, a header, networks, positions and one page of
+Tiles are made by decoding random slots, which draws symbols from the model of the stream itself.
+The symbols are recorded and coded backwards, so the decoder reads what was drawn. All that this
+writer needs besides the decoder is therefore chunks, a header, networks, positions and one page of
 rANS.
 """
 
@@ -72,8 +72,8 @@ def head_payload(elements):
 
 
 def random_nete(rng, h):
-    """Shifts and weights of many sizes, up to what R-NET-006 allows; half of the layers are not on
-    the integer grid."""
+    """Shifts and weights of many magnitudes, up to what R-NET-006 allows; half of the layers are
+    not on the integer grid."""
     shifts, values = [], []
     slices = [(s, h.context_bits, 32767) for s in slice_shapes(h)]
     for shape, bits, amplitude in [(hyperprior_shape(h), PHASE_BITS, 4096)] + slices:
@@ -94,7 +94,7 @@ def random_nete(rng, h):
 
 
 def pack_values(values):
-    """Rounded to binary32; what would be subnormal or negative zero becomes 0."""
+    """Rounded to binary32; subnormal numbers and negative zero become 0."""
     return struct.pack("<%df" % len(values), *(v if abs(v) >= 2.0 ** -126 else 0.0 for v in values))
 
 
@@ -108,7 +108,7 @@ def random_positions(rng, n):
 
 
 class DrawnSubstream:
-    """Stands in for rans.Substream: every slot is random, and bytes() codes what was taken."""
+    """Replaces rans.Substream: every slot is random, and bytes() codes the symbols taken."""
 
     def __init__(self, rng, n):
         self.rng, self.start, self.n, self.lanes = rng, 0, n, lane_count(n)
@@ -134,7 +134,7 @@ class DrawnSubstream:
 
 
 class DrawnTile(Tile):
-    """A Tile whose substreams are drawn; `payload_bytes` is its TILE payload."""
+    """A Tile whose substreams are random; `payload_bytes` is its TILE payload."""
 
     def __init__(self, rng, model, number):
         self.rng = rng
@@ -158,8 +158,8 @@ class DrawnTile(Tile):
 
 def random_stream(seed, anchors=None, changes=None, compact=False):
     """The bytes of a valid file; `changes` replace elements of the header; `compact`: of that
-    profile. A draw that no symbols could make valid, or with fewer bits than R-ENT-016 asks for, is
-    drawn again."""
+    profile. A draw that no symbols could make valid, or that has fewer bits than R-ENT-016
+    requires, is repeated."""
     for attempt in range(1000):
         rng = random.Random("%s %d" % (seed, attempt))
         try:

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: BSD-2-Clause
-"""What random streams of profile Compact have in place of blobs and positions (8.2, 7.6): integers
-and places are drawn, turned into the bits of 9.5 and 9.6, and coded with the contexts of the
-reader."""
+"""Blobs and positions of random streams of profile Compact (8.2, 7.6): random integers and
+positions are turned into the bits of 9.5 and 9.6, and coded with the contexts of the reader."""
 
 import struct
 
@@ -29,7 +28,7 @@ def code_slots(taken, lanes):
 
 
 class GivenRest:
-    """Stands in for adaptive.Rest: the bits are given, and bytes() codes them."""
+    """Replaces adaptive.Rest: the bits are given, and bytes() codes them."""
 
     def __init__(self, bits):
         self.bits, self.start, self.taken = iter(bits), 0, []
@@ -117,7 +116,7 @@ def coded_nete(h, shifts, values):
 
 
 def random_unit(rng, n):
-    """The stored exponent of a unit and its n integers, all of which binary32 has."""
+    """The stored exponent of a unit and its n integers, all exact in binary32."""
     length = rng.randint(0, 24)
     exponent = rng.choice((-length - rng.randint(0, 4),) * 30 + (-126, min(127, 128 - length)))
     return exponent + 128, [exact(rng.randint(-(1 << length) + 1, (1 << length) - 1))

@@ -7,13 +7,13 @@ binary32 operation, exactly:
 
 * A product of two binary32 values has at most 48 significant bits and an exponent far inside
   binary64's range: it is exact, so there is one rounding.
-* A sum, difference, quotient or square root may be rounded twice, but twice is harmless from 24 to
-  53 bits, since 53 >= 2 * 24 + 2 (Figueroa, "When is double rounding innocuous?"): such a result is
+* A sum, difference, quotient or square root may be rounded twice, which is harmless from 53 to 24
+  bits, since 53 >= 2 * 24 + 2 (Figueroa, "When is double rounding innocuous?"): such a result is
   either exact in 53 bits or farther than half a unit of binary64 from every midpoint between two
-  binary32 neighbours. Subnormal results have shorter significands, so still more room; subnormal
+  binary32 neighbours. Subnormal results have shorter significands and so still more room; subnormal
   sums are exact.
-* Too large results become infinite, as IEEE 754 says; storing in an array, unlike struct.pack, does
-  not object.
+* Results that are too large become infinite, as IEEE 754 says; storing in an array, unlike
+  struct.pack, raises no error.
 """
 
 import math
@@ -67,8 +67,8 @@ def negated(a):
 
 
 def at_least(low, a):
-    """max(a, low) for operands in either order: 12.2 tells them apart only for NaN, which stays,
-    and for zeros of two signs (see relu)."""
+    """max(a, low) for operands in either order: 12.2 distinguishes them only for NaN, which stays,
+    and for zeros of different sign (see relu)."""
     return [low if v < low else v for v in a]
 
 

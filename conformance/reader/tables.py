@@ -2,7 +2,7 @@
 """The tables of annex A, computed from their formulas.
 
 Every entry is exact or the rounding of an irrational number, so it is computed with 30 decimal
-digits and rounded once: an error would take 20 digits of agreement with a half. test_tables.py
+digits and rounded once: it could be wrong only if 20 digits agreed with a tie. test_tables.py
 compares each entry with the printed annex.
 """
 

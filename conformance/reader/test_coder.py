@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-2-Clause
-"""Substreams: the coder, masks, Gaussian symbols, escapes, and each way in which they can be wrong
+"""Substreams: the coder, masks, Gaussian symbols, escapes, and each error that they can have
 (chapter 9)."""
 
 import random
@@ -16,7 +16,7 @@ from verdict import Refusal
 
 
 class Chosen(DrawnSubstream):
-    """Takes the slots that it is given."""
+    """Returns the slots that it is given."""
 
     def __init__(self, slots):
         super().__init__(random.Random(0), 1)
@@ -29,7 +29,7 @@ class Chosen(DrawnSubstream):
 
 
 def drawn(n, g, mu, seed=0):
-    """Symbols of a drawn substream and its bytes."""
+    """Symbols of a random substream and its bytes."""
     substream = DrawnSubstream(random.Random(seed), n)
     symbols = decode_symbols(substream, [g] * n, [mu] * n)
     return symbols, substream.bytes

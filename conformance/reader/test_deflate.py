@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-2-Clause
-"""R-NET-007 point by point: streams written bit by bit, and what blob.inflate says of them."""
+"""R-NET-007 point by point: streams written bit by bit, and what blob.inflate says about them."""
 
 import struct
 import unittest

@@ -28,8 +28,8 @@ STILL = dict(MOVING, motion=0, phi_dim=0, bank_rows=0, bank_dim=0, deform_layers
 
 
 def judged(base, level=31, file_bytes=1 << 20, **changes):
-    """None, or identifier and name of the element whose offset is reported, with the number of the
-    entry."""
+    """None, or the identifier, and the name of the element whose offset is reported, with the
+    number of its entry."""
     elements = dict(base, **changes)
     payload = head_payload(elements)
     try:
@@ -119,7 +119,7 @@ class Memory(unittest.TestCase):
         self.refused(777, need - 1)
 
     def test_what_counts(self):
-        """Without a bound: symbols of the anchors that the file can hold, values, its bytes."""
+        """Without a bound: symbols of the anchors that the file can hold, values, and its bytes."""
         check_memory(self.h, 1000000, None)
         self.refused(1 << 28, None)
         self.h.n_anchors = self.h.bank_rows = 1 << 31
@@ -166,7 +166,7 @@ class Level(unittest.TestCase):
                     check_totals(level, *[n + (i == j) for j, n in enumerate(most)], 1000, 7)
                 self.assertEqual(("lvl.exceeded", 7),
                                  (caught.exception.error, caught.exception.offset))
-        # 100 anchors with 4 + 6 + 6 + 2 + 4 components: 2200 symbols, 8.6 bytes at 256 a byte.
+        # 100 anchors with 4 + 6 + 6 + 2 + 4 components: 2200 symbols, 8.6 bytes at 256 per byte.
         self.assertIsNone(judged(MOVING, 1, 9))
         self.assertEqual(("lvl.exceeded", "reserved"), judged(MOVING, 1, 8))
         # Three hidden layers of 181 have 65522 products, inputs and outputs not counted; four of

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-2-Clause
-"""Whole streams: drawn ones are valid with consistent tiers; broken ones are refused where the text
-says."""
+"""Whole streams: random ones are valid with consistent tiers; broken ones are refused where the
+text says."""
 
 import json
 import math
@@ -58,7 +58,7 @@ BASE = dict(motion=1, phi_dim=2, bank_rows=2, bank_dim=2, deform_layers=1, defor
 
 class Drawn(unittest.TestCase):
     def test_tiers(self):
-        """Sizes that follow from annex J, for every combination that the seeds draw."""
+        """Sizes that follow from annex J, for every combination that the seeds give."""
         for seed in range(20):
             data = random_stream(seed, compact=seed % 2 == 1)
             model = Model(data)
@@ -192,7 +192,7 @@ class Broken(unittest.TestCase):
                          self.changed(self.chunks[:-1] + [(b"ENDS", 1, last + b"\0")]))
 
     def test_lowest_offset_wins(self):
-        """A payload that is too long is found out at its end, after errors inside."""
+        """A payload that is too long is detected at its end, after errors inside it."""
         kind, flags, posn = self.chunks[4]
         self.assertEqual(b"POSN", kind)
         wrong = posn[:6] + b"\0\x80" + posn[8:] + b"\0"
@@ -200,7 +200,7 @@ class Broken(unittest.TestCase):
                          self.changed(self.chunks[:4] + [(kind, flags, wrong)] + self.chunks[5:]))
 
     def test_any_change_has_a_verdict(self):
-        """Random changes with repaired hashes: a verdict each, never another exception."""
+        """Random changes with repaired hashes: each gives a verdict, never another exception."""
         rng = random.Random(6)
         for _ in range(60):
             chunks = list(self.chunks)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-2-Clause
-"""The computed tables against the printed ones of annex A, and what chapter 9 says of them."""
+"""The computed tables against the printed ones of annex A, and what chapter 9 says about them."""
 
 import pathlib
 import re

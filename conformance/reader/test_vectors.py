@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-2-Clause
-"""A part of the conformance suite, in this process: what other decoders say of files that this one
-has not made."""
+"""A part of the conformance suite, in this process: files that this decoder has not made, with the
+answers of other decoders."""
 
 import json
 import pathlib
@@ -20,8 +20,8 @@ LARGEST = 8000                      # bytes
 
 
 def chosen():
-    """Descriptors, by a check sum of their names, so that new vectors do not change which of the
-    old ones are taken."""
+    """Descriptors, selected by a checksum of their names, so that new vectors do not change which
+    of the old ones are taken."""
     for path in sorted(VECTORS.rglob("*.json")):
         if path.with_suffix(".ted4").exists() and (zlib.crc32(path.stem.encode()) % SHARE == 0
                                                    or path.parent.name == "worked"):

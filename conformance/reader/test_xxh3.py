@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: BSD-2-Clause
-"""XXH3 against values made with libxxhash 0.8.1, and, where that library is there, against the
-library."""
+"""XXH3 against values made with libxxhash 0.8.1, and against that library where it is installed."""
 
 import ctypes
 import ctypes.util
@@ -9,8 +8,8 @@ import unittest
 
 from xxh3 import xxh3_128, xxh3_64
 
-# Length n of the input 1, 8, 15, ... (7 i + 1 mod 256); both hashes. Every way through the
-# algorithm and its borders.
+# Length n of the input 1, 8, 15, ... (7 i + 1 mod 256), and both hashes: every branch of the
+# algorithm, at its limits.
 KNOWN = """
 0     2d06800538d394c2 99aa06d3014798d86001c324468d497f
 1     e12ef9d2eb86ceeb 51025a4491835505e12ef9d2eb86ceeb

@@ -78,7 +78,7 @@ class Tile:
             self.streams.append((substream, bits))
 
     def decode_feature(self):
-        """10.3, R-ATT-005: slice after slice, each seeing the contexts of those before it."""
+        """10.3, R-ATT-005: slice after slice, each with the contexts of those before it."""
         h = self.header
         prior = self.priors["feature"]
         components, contexts, at = [], [], 0

@@ -7,7 +7,7 @@ from tables import STEP
 
 def quantiser_steps(h, name, indices):
     """q of each anchor for a type: the binary32 product of Q0 and STEP. The binary64 product of two
-    binary32 values is exact, so there is one rounding."""
+    binary32 values is exact, so there is only one rounding."""
     q0 = h.step[("feature", "scaling", "offset", "phi", "tau").index(name)]
     table = {i: f32_round(q0 * STEP[i]) for i in set(indices)}
     return [table[i] for i in indices]

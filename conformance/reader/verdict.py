@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-2-Clause
-"""Verdicts of chapter 14: a byte string is valid, or one Refusal says why not."""
+"""Verdicts of chapter 14: a byte string is valid, or one Refusal says why it is not."""
 
 
 class Refusal(Exception):
@@ -12,7 +12,7 @@ class Refusal(Exception):
 
     @property
     def result(self):
-        """invalid, limit or unsupported: told by the first word of the identifier (chapter 14)."""
+        """invalid, limit or unsupported, from the first word of the identifier (chapter 14)."""
         word = self.error.split(".")[0]
         return word if word in ("limit", "unsupported") else "invalid"
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-2-Clause
 """XXH3-64 and XXH3-128 with seed 0 (xxHash 0.8 specification), for chapters 5 and 15 and annex J.
 
-Three ways by length: up to 16 bytes, up to 240 bytes, and longer, where eight accumulators of 64
-bits run over stripes of 64 bytes.
+There are three methods, by length: up to 16 bytes, up to 240 bytes, and longer, with eight
+accumulators of 64 bits over stripes of 64 bytes.
 """
 
 import struct
