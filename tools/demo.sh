@@ -1,7 +1,7 @@
 #!/bin/sh
-# The main job, whole: a scene of our own, images to .ted4, and back to Gaussians and pictures in
-# fresh processes. $1: folder for everything made. Last line: one JSON object with psnr, bytes,
-# train_s, decode_ms.
+# Runs the whole pipeline: makes a scene, trains it to a .ted4 file, and goes back to Gaussians and
+# pictures in fresh processes. $1: folder for all results. The last line is one JSON object with
+# psnr, bytes, train_s, decode_ms.
 set -e
 out=$1
 bin=${TED4_BUILD:-build}

@@ -1,8 +1,8 @@
 #!/bin/sh
-# make-deb.sh FOLDER - builds the Debian packages of the last commit in a copy of it below FOLDER,
-# which is made anew, and leaves them there. It needs dpkg-dev, debhelper and what debian/control
-# names; it takes nothing from the network. MAINTAINER in the environment, "NAME <ADDRESS>", takes
-# the place of the maintainer in debian/control and of who signs the last entry of the changelog.
+# make-deb.sh FOLDER - builds the Debian packages of the last commit in a copy below FOLDER, which
+# is made anew, and leaves them there. It needs dpkg-dev, debhelper and what debian/control names,
+# and downloads nothing. The environment variable MAINTAINER, "NAME <ADDRESS>", replaces the
+# maintainer in debian/control and the name that signs the last entry of the changelog.
 # SPDX-License-Identifier: BSD-2-Clause
 set -eu
 folder=$1
@@ -23,7 +23,7 @@ if [ -n "${MAINTAINER:-}" ]; then
     sed -i "s|^Maintainer: .*|Maintainer: $MAINTAINER|" debian/control
     sed -i "1,/^ -- /s|^ -- .*>  | -- $MAINTAINER  |" debian/changelog
 fi
-# Variables of the make that calls this are not for the one in there.
+# Variables of the make that calls this script must not reach the make in the copy.
 env -u MAKEFLAGS -u MAKEOVERRIDES -u MFLAGS -u CFLAGS -u LDFLAGS \
     dpkg-buildpackage -us -uc -Jauto
 cd ..

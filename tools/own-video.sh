@@ -1,8 +1,8 @@
 #!/bin/sh
-# own-video.sh - from one's own footage to a SCENE for ted4enc; doc/own-video.md says how to film,
-# and what goes wrong. One video: a camera that moves; FPS of its frames a second are taken (6
-# unless the environment says). Several: cameras that stand still, one clip each, begun together.
-# Needs ffmpeg and colmap (Debian).
+# own-video.sh - makes a SCENE for ted4enc from your own footage; doc/own-video.md says how to film,
+# and what can go wrong. One video is of a moving camera; FPS of its frames are taken per second (an
+# environment variable; default 6). Several are clips of fixed cameras, one each, that start at the
+# same time. Needs ffmpeg and colmap (Debian).
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 export LC_ALL=C QT_QPA_PLATFORM=offscreen
@@ -10,7 +10,7 @@ die() { echo "own-video.sh: $*" >&2; exit 3; }
 try() { "$@" </dev/null >>"$out/log" 2>&1 || die "$1 $2 failed: the end of $out/log says why"; }
 
 [ $# -ge 2 ] || die "usage: own-video.sh FOLDER VIDEO, or own-video.sh FOLDER CLIP CLIP..."
-# No name is an option, a protocol of ffmpeg, or an assignment of awk.
+# No name may look like an option, a protocol of ffmpeg, or an assignment of awk.
 for v; do
     shift
     case $v in /* | ./* | ../*) ;; *) v=./$v ;; esac

@@ -4,8 +4,8 @@ libraries that programs are linked with, and what builds and tests them.
     python3 tools/sbom.py FILE
 
 Run from the project's root, a git repository. The same commit on the same machine gives the same
-bytes. Versions of Debian packages are those installed here; the date is SOURCE_DATE_EPOCH (seconds)
-or that of the last commit.
+bytes. Versions of Debian packages are those installed; the date is SOURCE_DATE_EPOCH (seconds) or
+that of the last commit.
 SPDX-License-Identifier: BSD-2-Clause"""
 import datetime
 import fnmatch
@@ -19,7 +19,7 @@ import urllib.parse
 import uuid
 
 NOTHING = "NOASSERTION"
-# Packages of the Makefile's DEPS: relation to ours, and licence.
+# Packages of the Makefile's DEPS: their relation to our package, and their licence.
 DEPENDENCIES = {
     "gcc": ("BUILD_TOOL_OF", "GPL-3.0-or-later WITH GCC-exception-3.1"),
     "libc6-dev": ("BUILD_DEPENDENCY_OF", "LGPL-2.1-or-later"),
@@ -34,7 +34,7 @@ DEPENDENCIES = {
 
 
 def output_of(*command):
-    """What the command prints, or None if it fails or is not there."""
+    """What the command prints, or None if it fails or is missing."""
     try:
         return subprocess.run(command, capture_output=True, check=True).stdout.decode()
     except (OSError, subprocess.CalledProcessError):
@@ -58,13 +58,13 @@ def licences():
 
 
 def licence_of(path, rules):
-    """As Debian's format says: the last pattern that matches, with * for slashes too."""
+    """By Debian's format: that of the last pattern that matches, where * also matches slashes."""
     return [licence for pattern, licence in rules if fnmatch.fnmatchcase(path, pattern)][-1]
 
 
 def identifier(kind, name):
-    """An SPDX identifier, which has letters, digits, dots and dashes only. Names that differ in
-    other characters are told apart by a hash."""
+    """An SPDX identifier, which may have only letters, digits, dots and dashes. A hash
+    distinguishes names that differ in other characters."""
     plain = re.sub(r"[^A-Za-z0-9.-]", "-", name)
     return f"SPDXRef-{kind}-{plain}-{hashlib.sha256(name.encode()).hexdigest()[:8]}"
 
@@ -108,7 +108,8 @@ def dependency_entry(name, licence):
 
 
 def namespace(version, code, seconds):
-    """A name of the document. This address is that of SPDX 2.3, 6.5, for who has no website."""
+    """The document's namespace, by the address that SPDX 2.3, 6.5, gives to projects without a
+    website."""
     unique = hashlib.sha1(f"{version} {code} {seconds}".encode()).digest()[:16]
     return f"https://spdx.org/spdxdocs/ted4-{version}-{uuid.UUID(bytes=unique, version=5)}"
 

@@ -1,7 +1,7 @@
 #!/bin/sh
 # try-deb.sh MIRROR [FOLDER] - installs the packages of FOLDER (build/deb, by `make deb`) into a
 # bare Debian 12 that debootstrap makes from MIRROR, and uses them there. Needs root and the
-# network. Speaks as the tests do; run from the project's root.
+# network. Prints lines as the tests do; run from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 [ $# -ge 1 ] || { echo "try-deb.sh: usage: try-deb.sh MIRROR [FOLDER]" >&2; exit 3; }
@@ -13,7 +13,7 @@ ls "$folder"/ted4-tools_*.deb >/dev/null || exit 3
 out=$(mktemp -d) root=$out/root bad=0
 trap 'rm -rf --one-file-system "$out"' EXIT
 
-# inside NAME TEXT COMMAND: the command ends well in the root, and says the text, if that is any.
+# inside NAME TEXT COMMAND: the command succeeds in that system, and prints the text, if any.
 inside() {
     chroot "$root" env LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive sh -c "cd /try && $3" \
         >"$out/said" 2>&1

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""circles.py FOLDER [FLOOR,FLOOR,...]: which file calls which, from the definitions and uses of
-functions in the C files below FOLDER. A file is a .c file together with the header of its name.
-Says which files lie on a circle of calls of more than two files and, where floors are given, lowest
-first and folders of one floor joined by +, which calls go up, or across to a folder of the same
-floor. The folder itself is called "." there."""
+"""circles.py FOLDER [FLOOR,FLOOR,...] - finds out which file calls which, from the definitions and
+uses of functions in the C files below FOLDER. A file is a .c file together with the header of its
+name. Prints the files that lie on a circle of calls of more than two files. Where floors are given,
+lowest first and folders of one floor joined by +, also prints the calls that go up, or across to
+another folder of the same floor. The name of FOLDER itself is then "."."""
 import os
 import re
 import sys
@@ -16,15 +16,15 @@ NOISE = re.compile(r'/\*.*?\*/|"(?:\\.|[^"\\])*"|\'(?:\\.|[^\'\\])*\'|^#(?! *def
 # A function at the first column, and whether its body follows (TED4_LEVELED: render/leveled.h).
 FUNCTION = re.compile(r'^(?!static (?!inline))[a-z][\w \t*]*?\b(?:TED4_LEVELED\()?(\w+)\)?'
                       r'\((?:[^;{}()]|\((?:[^;{}()]|\([^;{}()]*\))*\))*\)(\n\{|;)', re.M)
-# A function called, or passed on; neither a member nor a type.
+# A function that is called or passed on; neither a member nor a type.
 USE = re.compile(r'(?<![\w.>])([a-z]\w+)(?=\s*[(),;:?}&|=!])')
 CAST = re.compile(r'(?<!\w)\(\w+\)(?= ?[\w(])')
-# What of a header is no declaration: bodies of functions, and macros.
+# The parts of a header that are not declarations: bodies of functions, and macros.
 BODY = re.compile(r'^\{\n.*?^\}|^# *define(?:[^\n]*\\\n)*[^\n]*', re.S | re.M)
 
 
 def read(path):
-    """Text of a file, and the part of it in which functions are used."""
+    """The text of a file, and the part of it in which functions are used."""
     with open(path, encoding='utf-8') as file:
         text = NOISE.sub(' ', file.read())
     used = FUNCTION.sub(lambda m: ' ' if m.group(2) == ';' else m.group(), text)
@@ -34,7 +34,8 @@ def read(path):
 
 
 def modules(folder):
-    """By path without suffix: functions that a .c file and its header offer, define, and use."""
+    """By path without suffix: the functions that a .c file and its header offer, define, and
+    use."""
     found = {}
     for at, _, names in sorted(os.walk(folder)):
         for name in sorted(names):

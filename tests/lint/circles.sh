@@ -1,5 +1,5 @@
 #!/bin/sh
-# Calls within ref-encoder/train lead downwards only. Its floors are named here, lowest first;
+# Calls within ref-encoder/train lead only downwards. Its floors are named here, lowest first;
 # folders of one floor, joined by +, do not call each other. No circle of calls has more than two
 # files, there or in any other folder of sources.
 export LC_ALL=C

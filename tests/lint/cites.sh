@@ -1,6 +1,6 @@
 #!/bin/sh
-# What a file cites is in this repository, or is the paper: no notes, plans and lists of work that
-# readers do not have. Pages of bench/ that programs write follow their programs.
+# Files cite only this repository and the paper, not notes, plans and lists of work that readers do
+# not have. The pages of bench/ that programs write are covered by these programs.
 export LC_ALL=C
 words="[Aa]lgorithm facts|\(decisions\b|\bdecisions:? [0-9]|project's issue"
 {

@@ -1,13 +1,13 @@
 #!/bin/sh
 # columns.sh [FILE...] - lines have at most 100 columns, in everything that is written by hand: C,
-# tables of macros, shell, awk, Python, JavaScript, build rules, and the prose of Markdown. Left
-# aside in Markdown: rows of tables, code blocks, pictures, and lines that are little else than one
-# link or address; in shell: here-documents, and a quoted text of more than 70 columns, which a
-# program is given or has to say. Tables of the decoder that a program prints (norm/tables.c) stay
-# as they are printed, and so does text between clang-format off and on.
+# tables of macros, shell, awk, Python, JavaScript, build rules, and the prose of Markdown. Exempt
+# in Markdown are rows of tables, code blocks, pictures, and lines that consist of little more than
+# a link or address; in shell, here-documents and lines with a quoted text of more than 70 columns,
+# which a program is given or has to print. Also exempt are tables of the decoder that a program
+# prints (norm/tables.c), and text between clang-format off and on.
 export LC_ALL=C
-# What lies in a checkout besides (.venv, node_modules) is not the project's; files that are not
-# committed yet are.
+# Files that are not committed yet belong to the project; other things in a checkout (.venv,
+# node_modules) do not.
 files() {
     if [ "$(git rev-parse --show-prefix 2>/dev/null)" = '' ] &&
         git ls-files --cached --others --exclude-standard 2>/dev/null | grep -qx Makefile; then
@@ -53,7 +53,7 @@ awk '
     length(line) <= 100 { next }
     prose && (block || /^    / || /^ *\|/ || /^!\[/) { next }
     shell && match(line, /'"'"'[^'"'"']*'"'"'|"([^"\\]|\\.)*"/) && RLENGTH > 70 { next }
-    # What stays of the line without its longest word, an address or a link, says nothing.
+    # Without its longest word, an address or a link, little is left of the line.
     prose && /:\/\/|\]\(/ {
         longest = 0
         n = split(line, word, / +/)

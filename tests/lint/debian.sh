@@ -1,6 +1,6 @@
 #!/bin/sh
-# debian/changelog has the version of ref-decoder/ted4.h ("~dev" sorts before the release), and what
-# debian/*.docs and *.examples name exists.
+# debian/changelog has the version of ref-decoder/ted4.h ("~dev" sorts before the release), and the
+# files that debian/*.docs and *.examples name exist.
 export LC_ALL=C
 bad=0
 version=$(sed -n 's/^#define TED4_VERSION *"\(.*\)"$/\1/p' ref-decoder/ted4.h | sed 's/-dev/~dev/')

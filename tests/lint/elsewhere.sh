@@ -1,6 +1,5 @@
 #!/bin/sh
-# What conformance/rules-elsewhere.txt and branches-excluded.txt name as looking after rules and
-# branches exists.
+# The tests that conformance/rules-elsewhere.txt and branches-excluded.txt name exist.
 export LC_ALL=C
 bad=0
 for f in $(grep -ohE '\b(tests|fuzz|ref-decoder|ref-encoder|player)/[A-Za-z0-9_./-]+\.[a-z]+' \

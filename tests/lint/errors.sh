@@ -1,6 +1,6 @@
 #!/bin/sh
-# The table of identifiers in chapter 14 is status.def, entry for entry. `sh tests/lint/errors.sh
-# print` prints the table to paste.
+# The table of identifiers in chapter 14 agrees with status.def, entry for entry. `sh
+# tests/lint/errors.sh print` prints the table, for pasting.
 export LC_ALL=C
 table() {
     sed -n '/^TED4_STATUS(E_/{

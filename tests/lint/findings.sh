@@ -1,6 +1,6 @@
 #!/bin/sh
-# read/findings.def: every verdict of status.def has its line there, each rule of a line names that
-# error in annex G, and the rules of advice exist.
+# read/findings.def has a line for every verdict of status.def; each rule of a line names that error
+# in annex G; and the rules of advice exist.
 export LC_ALL=C
 bad=0
 def=ref-decoder/read/findings.def

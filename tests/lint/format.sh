@@ -1,7 +1,7 @@
 #!/bin/sh
-# The dialect of C is that of .clang-format, by clang-format 14: other versions break lines
-# elsewhere. Without it this lint says so and passes. What a program prints (tables.c) stays as it
-# is printed.
+# C is formatted by .clang-format with clang-format 14; other versions break lines elsewhere.
+# Without that version this lint says so and passes. A file that a program prints (tables.c) stays
+# as it is printed.
 export LC_ALL=C
 command -v clang-format-14 >/dev/null ||
     { echo "format.sh: skipped, no clang-format-14 (make deps-dev)"; exit 0; }

@@ -1,6 +1,6 @@
 #!/bin/sh
-# `make help` prints tools/make-help.txt: every phony target is in it, each line of it that names
-# targets names such as exist, and it fits 100 columns. "always" is no target for people.
+# `make help` prints tools/make-help.txt: the page lists every phony target and no others, and fits
+# 100 columns. "always" is not a target for users.
 export LC_ALL=C
 bad=0
 page=tools/make-help.txt

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Who may include whom (a folder may always include itself, and what lies in itself by its bare
-# name). Folders are named from ref-decoder or ref-encoder. System headers are not looked at.
+# Which folder may include which. A folder may always include itself, its own files by their bare
+# names. Folders are named from ref-decoder or ref-encoder. System headers are not checked.
 export LC_ALL=C
 rooms_1="train/math"
 rooms_2="$rooms_1 train/model"
@@ -11,7 +11,7 @@ rooms_6="$rooms_5 train/monitor"
 rooms_7="$rooms_6 train/step"
 rooms_8="$rooms_7 train/search"
 training="$rooms_8 train/train.h"
-# Who starts a thread, anywhere.
+# The files, anywhere, that may start a thread.
 starts=tool/thread_start.h
 commons="$starts $training"
 allow="

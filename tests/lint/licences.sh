@@ -1,9 +1,9 @@
 #!/bin/sh
-# The licence of a source is a tag that programs look for: whole on its line, with nothing behind it
-# but the end of the comment. Every C source has one, on a line of its own, as clang-format may join
-# it to the text before it, and then break it. Sources that stay as they are while a fuzzing
-# campaign runs, those of fuzz/ and of ref-decoder/{kernel,norm}, may have it behind other text, and
-# fuzz/parse.c in two pieces.
+# The licence of a source is a tag that programs search for: whole on its line, followed by nothing
+# but the end of the comment. Every C source has one, on a line of its own, since clang-format may
+# join it to the text before it, and then break it. Sources of fuzz/ and ref-decoder/{kernel,norm},
+# which do not change during a fuzzing campaign, may have it after other text, and fuzz/parse.c in
+# two pieces.
 export LC_ALL=C
 folders="ref-decoder ref-encoder conformance tests fuzz bench tools player spec doc python .ci"
 find $folders -type d \( -name __pycache__ -o -name node_modules \) -prune -o -type f \

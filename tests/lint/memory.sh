@@ -1,9 +1,9 @@
 #!/bin/sh
-# The decoder library takes memory through the caller's allocator only (SECURITY.md): base/arena.c
-# alone calls malloc, and zlib is given the arena. It prints nothing, ends no process, starts no
-# thread, and keeps nothing between calls: no variable of a file or function that can change
-# (state.py). Its folders are those of DEC_SRC in the Makefile; render/ draws for programs and is a
-# library of its own.
+# The decoder library takes memory only through the caller's allocator (SECURITY.md): base/arena.c
+# alone calls malloc, and zlib is given the arena. The library prints nothing, ends no process,
+# starts no thread, and keeps no state between calls: no variable of a file or function can change
+# (state.py). Its folders are those of DEC_SRC in the Makefile; render/, which draws for programs,
+# is a library of its own.
 export LC_ALL=C
 bad=0
 folders=$(sed -n '/^DEC_SRC/,/)))/s/.*addprefix ref-decoder\/,\([^)]*\)).*/\1/p' Makefile |
@@ -23,7 +23,7 @@ for f in $(for d in $folders; do ls ref-decoder/$d/*.[ch]; done); do
 done
 # shellcheck disable=SC2046 # file names without spaces
 python3 tests/lint/state.py $(for d in $folders; do ls ref-decoder/$d/*.[ch]; done) || bad=1
-# zlib without an allocator takes malloc.
+# Without an allocator, zlib uses malloc.
 for f in $(grep -lE '\b(in|de)flateInit2?\(' ref-decoder/read/*.c); do
     grep -q 'zalloc = ted4_zlib_alloc' "$f" || { echo "$f: zlib has malloc"; bad=1; }
 done

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Tier E decides with integers only (spec 12.1): no floating-point literals, double or libm in norm/
-# and read/. The type float itself may be named where values are only carried (blobs, header steps).
+# Tier E computes with integers only (spec 12.1): no floating-point literals, double or libm in
+# norm/ and read/. The type float may occur where values are only passed on (blobs, header steps).
 export LC_ALL=C
 bad=0
 for f in ref-decoder/norm/*.[ch] ref-decoder/read/*.[ch]; do

@@ -1,7 +1,7 @@
 #!/bin/sh
-# What reaches beyond the process - its environment, other programs, code that is loaded, the
-# network - occurs in the files named here only, each with the functions that it may use. Tests are
-# free.
+# Functions that reach beyond the process (its environment, other programs, code that is loaded, the
+# network) occur only in the files named here, each with the functions that it may use. Tests are
+# exempt.
 export LC_ALL=C
 allow="
 ref-decoder/base/level.c       getenv
@@ -25,7 +25,7 @@ words="$words|execl|execle|execlp|execv|execve|execvp|execvpe|execveat|fexecve|f
 words="$words|posix_spawnp?|dlopen|dlsym|syscall|socket"
 folders="ref-decoder ref-encoder conformance fuzz bench tools player doc"
 found=$(grep -rlwE "$words" $folders --include='*.[ch]' | while read -r f; do
-    # Without comments and strings; members of a structure have names of their own.
+    # Comments and strings do not count, nor do members of a structure.
     gcc -fpreprocessed -dD -E -P "$f" 2>/dev/null | sed 's/"\([^"\\]\|\\.\)*"//g' |
         grep -oE "(\.|->)? *\b($words)\b" | grep -v '^[.-]' | tr -d ' ' | sort -u | sed "s|^|$f |"
 done)

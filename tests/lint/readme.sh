@@ -1,7 +1,7 @@
 #!/bin/sh
 # README.md is short: at most 6,000 bytes, with the commands of demo and tests in its first 25
-# lines, a picture and a chart. In it, in doc/ and in the READMEs of folders that speak to readers
-# of code, relative links lead to files that exist, those to a heading to one that is there.
+# lines, a picture and a chart. In it, in doc/ and in the READMEs of folders with code, relative
+# links lead to files, and to headings, that exist.
 export LC_ALL=C
 bad=0
 pages="README.md $(echo doc/*.md) ref-decoder/README.md ref-encoder/README.md tests/README.md
@@ -18,7 +18,7 @@ echo "$images" | grep -qE '\.svg$' || { echo "README.md: no chart"; bad=1; }
 [ "$(ls -l doc/*.jpg doc/*.png 2>/dev/null | awk '{ n += $5 } END { print n + 0 }')" -le 150000 \
     ] || { echo "doc: pictures of more than 150,000 bytes"; bad=1; }
 
-# anchors FILE: what a heading is called in a link.
+# anchors FILE: prints the names that its headings have in links.
 anchors() {
     sed -n 's/^##* //p' "$1" | tr 'A-Z ' 'a-z-' | sed 's/[^a-z0-9_-]//g'
 }

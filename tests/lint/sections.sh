@@ -1,5 +1,5 @@
 #!/bin/sh
-# Every section and annex of the specification that anything here cites exists as a heading: "spec
+# Every section and annex of the specification that any file cites exists as a heading: "spec
 # 9.2, 9.4", "spec 5 to 10", "spec J.1", "annex D.1", "chapter 14".
 export LC_ALL=C
 bad=0

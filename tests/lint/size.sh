@@ -1,6 +1,6 @@
 #!/bin/sh
-# C: files of at most 600 lines, and unique file names. Shell, awk and Python, which say more in a
-# line: at most 400. Functions of at most 60 lines everywhere.
+# C files have at most 600 lines, and unique names. Files of shell, awk and Python, which say more
+# per line, have at most 400. Functions have at most 60 lines everywhere.
 export LC_ALL=C
 bad=0
 folders='ref-decoder ref-encoder conformance tests fuzz bench tools'

@@ -1,6 +1,6 @@
 #!/bin/sh
-# spec/rules.json and spec/errors.json, for programs, are made of what annex G and the table of
-# chapter 14 are made of, and say the same as these. `sh tests/lint/spec_json.sh print rules|errors`
+# spec/rules.json and spec/errors.json, for programs, are made from the same sources as annex G and
+# the table of chapter 14, and agree with them. `sh tests/lint/spec_json.sh print rules|errors`
 # prints one of them.
 export LC_ALL=C
 print_json() {
@@ -18,7 +18,7 @@ for which in rules errors; do
     print_json $which | cmp -s - spec/$which.json ||
         { echo "spec/$which.json is not what its sources say: make spec-annexes"; bad=1; }
 done
-# The rows of annex G, and of 14.3, again.
+# The rows of annex G, and of 14.3, made again from the JSON files.
 rows_of_rules() {
     sed -n 's/^,*{"id":"\([^"]*\)","file":"[^"]*","section":"\([^"]*\)","binds":"\([^"]*\)","word":"\([^"]*\)","errors":\[\([^]]*\)\].*/| \1 | \2 | \3 | \4 | \5 |/p' \
         spec/rules.json | sed 's/","/` `/g; s/"/`/g'

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Rules of the specification: each defined once, in words of BCP 14; each that anything quotes
-# exists; every identifier of status.def is named by a rule, and the other way round; annex G is
+# Rules of the specification: each is defined once, with key words of BCP 14; every rule that a file
+# quotes exists; rules name the identifiers of status.def, all of them and no others; annex G is
 # current. `sh tests/lint/spec_rules.sh print` prints annex G.
 export LC_ALL=C
 index() {

@@ -1,7 +1,7 @@
 #!/bin/sh
-# The text of the specification: links between its files lead somewhere, cited sections exist,
-# chapters and annexes stand in the README's table, no line names an absolute path or a host, and
-# printed code has no shift whose precedence a reader has to know.
+# The text of the specification: links between its files have targets, cited sections exist, the
+# README's table lists all chapters and annexes, no line names an absolute path or a host, and no
+# shift in printed code requires the reader to know its precedence.
 export LC_ALL=C
 bad=0
 for l in $(grep -ohE '\]\([^)#]+' spec/*.md | sed 's/](//' | sort -u); do
@@ -23,7 +23,7 @@ for f in spec/*.md; do
     [ "$(grep -c '^```' "$f")" = "$(( $(grep -c '^```' "$f") / 2 * 2 ))" ] ||
         { echo "$f: a code block is not closed"; bad=1; }
 done
-# Printed code (4.5): a shift beside a mask stands in parentheses.
+# Printed code (4.5): a shift next to a mask is in parentheses.
 awk '
     FNR == 1 || /^```/ { code = /^```c$/ }
     code && /(<<|>>) [^()&|^,;]* [&|^] / {

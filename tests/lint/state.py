@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""state.py FILE...: C files, or headers, whose variables outlive a call: objects of a file, and
-static or thread-local ones of a function, that are not constant; whatever a macro or a condition of
-the preprocessor hides is looked at too. Prints "FILE: keeps: DECLARATION" for each, and then ends
-with status 1."""
+"""state.py FILE... - finds variables of C files, or headers, that outlive a call: objects of a
+file, and static or thread-local ones of a function, that are not constant, including those in
+macros and behind conditions of the preprocessor. Prints "FILE: keeps: DECLARATION" for each, and
+then ends with status 1."""
 import re
 import sys
 
@@ -10,7 +10,7 @@ NOISE = re.compile(r'/\*.*?\*/|//[^\n]*|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*
 DIRECTIVE = re.compile(r'^[ \t]*#[^\n]*', re.M)
 MACRO = re.compile(r'^[ \t]*# *define +\w+(?:\([^)]*\))?([^\n]*)', re.M)
 LASTS = re.compile(r'\b(static|_Thread_local|__thread)\b')
-# What says something about a declaration, in parentheses that are not those of a function.
+# Specifiers of a declaration whose parentheses are not those of a function.
 ASIDE = re.compile(r'\b(_Alignas|__attribute__) *\((?:[^()]|\((?:[^()]|\([^()]*\))*\))*\)')
 ATOMIC = re.compile(r'\b_Atomic *\(([^()]*)\)')
 BOUNDS = re.compile(r'\[[^\]]*\]')
@@ -22,9 +22,9 @@ POINTER_TO_FUNCTION = re.compile(r'\( *\*([^()]*)\)')
 
 
 def statements(text):
-    """(whether it is in a function, declaration or statement up to its value) of each that ends in
-    a semicolon; bodies of types and values in braces are left out."""
-    stack, head, value = [], '', None  # value: parentheses that are open in it
+    """For each declaration or statement that ends in a semicolon: whether it is in a function, and
+    its text up to its value. Bodies of types and values in braces are left out."""
+    stack, head, value = [], '', None  # value: its open parentheses
     for c in text:
         if c == '{':
             if value is not None or (stack and stack[-1] == 'left out'):
@@ -55,7 +55,7 @@ def statements(text):
 
 
 def is_constant(declaration):
-    """Whether none of its declarators can change: a pointer is constant behind its last star."""
+    """Whether none of its declarators can change: a pointer needs const after its last star."""
     pointer = POINTER_TO_FUNCTION.search(declaration)
     if pointer:
         return 'const' in pointer.group(1).split()

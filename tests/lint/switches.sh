@@ -1,6 +1,6 @@
 #!/bin/sh
-# The table of all training options in doc/switches.md is options.def, entry for entry. `sh
-# tests/lint/switches.sh print` prints the table to paste.
+# The table of all training options in doc/switches.md agrees with options.def, entry for entry. `sh
+# tests/lint/switches.sh print` prints the table, for pasting.
 export LC_ALL=C
 table() {
     awk '

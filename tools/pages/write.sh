@@ -1,6 +1,7 @@
 #!/bin/sh
-# write.sh BUILD - writes manual pages into BUILD/man and completions into BUILD/completion, by the
-# programs of BUILD/pages, each of which tells of itself (pages.c). Run from the project's root.
+# write.sh BUILD - writes manual pages into BUILD/man and completions into BUILD/completion, by
+# means of the programs in BUILD/pages, each of which describes itself (pages.c). Run from the
+# project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -eu
 b=$1
@@ -16,7 +17,7 @@ date=$(awk '/^date-released:/ {
 programs=$(cd "$b/pages" && ls | grep '^ted4')
 subcommands=$("$b/pages/ted4conf" --help | sed -n 's/^  \([a-z]*\) .*/\1/p' | xargs)
 
-# each KIND [DATE]: what every program, or subcommand, writes.
+# each KIND [DATE]: has every program, or subcommand, write that kind of page.
 each() {
     for p in $programs; do
         if [ "$p" = ted4conf ]; then
@@ -33,14 +34,14 @@ done
 for s in $subcommands; do "$b/pages/ted4conf" "$s" man "$date" >"$man/ted4conf-$s.1"; done
 for page in tools/pages/*.1; do sed "s/@DATE@/$date/" "$page" >"$man/${page##*/}"; done
 
-# filled TEMPLATE KIND: the template with what the programs write in the place of @CASES@.
+# filled TEMPLATE KIND: prints the template, with the output of the programs for @CASES@.
 filled() {
     each "$2" >"$b/pages/cases"
     sed -e "/@CASES@/{r $b/pages/cases" -e 'd;}' \
         -e "s/@PROGRAMS@/$(echo $programs)/; s/@SUBCOMMANDS@/$subcommands/" "$1"
     rm "$b/pages/cases"
 }
-# Shells look for a file with the name of the program; only fish has one for each.
+# Shells look for a file with the name of the program; only for fish there is one for each.
 filled tools/pages/bash.in bash >"$bash/ted4dec"
 for p in $programs; do [ "$p" = ted4dec ] || ln -s ted4dec "$bash/$p"; done
 filled tools/pages/zsh.in zsh >"$zsh/_ted4"
