@@ -1,8 +1,8 @@
 #!/bin/sh
-# machines.sh BUILD - the test programs of a build folder, once with the kernels of each level
-# (ref-decoder/base/level.h); TEST_LEVELS names some of them. Levels that this machine has not are
-# said to be left out. A line for each as it ends; what it said is kept in BUILD/machines-LEVEL.log.
-# Exit status: did all pass, and was there one?
+# machines.sh BUILD - runs the test programs of a build folder once with the kernels of each level
+# (ref-decoder/base/level.h), or of those that TEST_LEVELS names. Levels that this machine lacks are
+# reported as left out. Prints a line as each level ends, and stores its output in
+# BUILD/machines-LEVEL.log. The exit status is 0 if there was a level, and all tests passed.
 # SPDX-License-Identifier: BSD-2-Clause
 build=$1
 has=$(TED4_KERNEL=none "$build/ted4dec" - 2>&1 </dev/null | sed -n 's/.*this machine has plain//p')

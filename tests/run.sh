@@ -1,13 +1,13 @@
 #!/bin/sh
-# Runs test programs; prints each one's name, its failures, and totals. Exit status: did all pass?
-# cmocka's own report goes to a log beside the program, shown only when it failed or skipped
-# something.
-# Numbers and ranges of letters are read as the programs write them, and options may follow
-# arguments.
+# Runs test programs and prints each one's name, its failures, and totals. The exit status is 0 if
+# all passed. cmocka's own report goes to a log beside the program and is shown only if something
+# failed or was skipped.
+# With these settings, numbers and ranges of letters are read as the programs write them, and
+# options may follow arguments.
 export LC_ALL=C
 unset POSIXLY_CORRECT
 
-# suits FOLDER: tests can make their programs below it and run them, and its path is one word.
+# suits FOLDER: whether tests can make programs below it and run them, and its path has no space.
 suits() {
     case $1 in *[[:space:]]*) return 1 ;; esac
     trial=$(mktemp "$1/ted4-run-XXXXXX") || return 1
@@ -28,7 +28,7 @@ if [ "$base" != "$asked" ]; then
     echo "temporary files are made in $own: $asked runs no programs, or has a space"
     export TMPDIR="$own"
 fi
-# Commands that programs are given are split at spaces, and make knows no others.
+# Commands that programs are given are split at spaces, and make allows no spaces in names.
 case ${TED4_BUILD:-} in
 *[[:space:]]*) ln -s "$TED4_BUILD" "$own/build" && export TED4_BUILD="$own/build" ;;
 esac

@@ -1,8 +1,8 @@
 #!/bin/sh
-# merges.sh - bench/sweep.sh, killed before and after each command that moves or removes a file,
-# while it merges rows and while it makes them: the table is whole at every moment, no row is lost,
-# none comes twice, and the next call ends with the same table. Programs are stand-ins. Prints lines
-# as a cmocka program does; run by `make test-cluster` from the project's root.
+# merges.sh - kills bench/sweep.sh before and after each command that moves or removes a file, while
+# it merges rows and while it makes them: the table is complete at every moment, no row is lost or
+# doubled, and the next call ends with the same table. Programs are stand-ins. Prints lines as a
+# cmocka program does; run by `make test-cluster` from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 LC_ALL=C; export LC_ALL
@@ -13,7 +13,7 @@ command -v setsid >/dev/null || { skip merges "there is no setsid"; exit 0; }
 [ -d "$out" ] || exit 1
 . tests/support/sweep_stand_ins.sh
 
-# Call number $KILL_AT of mv and rm ends everything, before or after its work as $KILL_WHEN says.
+# Call number $KILL_AT of mv or rm kills everything, before or after its work as $KILL_WHEN says.
 for command in mv rm; do
     stand_in "bin/$command" <<END
 n=\$((\$(cat "$out/count") + 1))
@@ -25,7 +25,8 @@ END
 done
 export KILL_AT=never KILL_WHEN=never
 
-# The table before: an older row of a run that comes again, and one that no run of the table makes.
+# The initial table: an older row of a run that is made again, and one that no run of the table
+# makes.
 work=$out/build/sweep
 echo 0 >"$out/count"
 stand_ins --jobs 1 >"$out/said" 2>&1 || { fail rows "$(cat "$out/said")"; exit 1; }
@@ -40,8 +41,8 @@ sed 1d "$out/sweep.csv" | while IFS= read -r row; do
     echo "$row" >"$out/files/${row%%,*}.row"
 done
 
-# Whole: a first line, and every row with as many cells, once; of runs that are done, a row here or
-# in a file.
+# The table is complete: a first line, and each row once and with as many cells; every finished run
+# has a row here or in a file.
 whole() {
     awk -F, -v head="$(head -n 1 "$out/expected.csv")" '
         NR == 1 { cells = NF; if ($0 != head) exit 1 }
@@ -53,7 +54,8 @@ whole() {
     grep -q '^elsewhere-whole-1,' "$out/sweep.csv"
 }
 
-# everywhere NAME FILES OPTION: with these files of rows, killed at each moment, then called again.
+# everywhere NAME FILES OPTION: starts with these files of rows, kills the script at each moment in
+# turn, and calls it again.
 everywhere() {
     at=1 kills=0 wrong=
     while [ -z "$wrong" ]; do

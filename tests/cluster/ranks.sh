@@ -1,7 +1,7 @@
 #!/bin/sh
-# ranks.sh - ted4enc-mpi: the same bytes, log and checkpoint as ted4enc for any number of ranks and
-# threads, also of a still scene; a rank that is killed, stopped, or cannot read a picture. Prints
-# lines as a cmocka program does; run by `make test-mpi` from the project's root.
+# ranks.sh - ted4enc-mpi gives the same bytes, log and checkpoint as ted4enc for any number of ranks
+# and threads, also for a still scene, and handles a rank that is killed, stopped, or cannot read a
+# picture. Prints lines as a cmocka program does; run by `make test-mpi` from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 LC_ALL=C; export LC_ALL
@@ -10,7 +10,7 @@ command -v mpirun >/dev/null || { skip ranks "there is no mpirun (make deps-mpi)
 pkg-config --exists ompi-c || { skip ranks "there is no Open MPI (make deps-mpi)"; exit 0; }
 need ranks ted4enc ted4enc-mpi ted4scene python3
 [ -d "$out" ] || exit 1
-# Ranks may be more than cores; as root only where there is nobody else to be.
+# There may be more ranks than cores; they run as root only if there is no other user.
 launch="mpirun --oversubscribe $([ "$(id -u)" != 0 ] || echo --allow-run-as-root)"
 how="--preset draft --set batch=4 --set stage1=150 --set stage2=80 -f"
 
@@ -20,13 +20,13 @@ make_scene() {
 }
 make_scene "$out/scene" || { fail scene "cannot be made"; exit 1; }
 
-# enc NAME OPTION...: one process. ranks N NAME OPTION...: so many.
+# enc NAME OPTION...: trains in one process. ranks N NAME OPTION...: trains in N processes.
 enc() { name=$1; shift; "$TED4_BUILD/ted4enc" "$out/scene" $how -o "$out/$name.ted4" "$@"; }
 ranks() {
     n=$1 name=$2; shift 2
     $launch -n "$n" "$TED4_BUILD/ted4enc-mpi" "$out/scene" $how -o "$out/$name.ted4" "$@"
 }
-# steady LOG: without what depends on time.
+# steady LOG: prints the log without what depends on time.
 steady() {
     python3 -c 'import json, sys
 for line in open(sys.argv[1]):
@@ -39,7 +39,7 @@ for line in open(sys.argv[1]):
 enc whole -j 2 -q --log "$out/whole.log" || { fail one_process "fails"; exit 1; }
 steady "$out/whole.log" >"$out/whole.steady"
 
-# same NAME: the file of the undisturbed run, and its log.
+# same NAME: checks that the file and the log are those of the undisturbed run.
 same() {
     cmp -s "$out/whole.ted4" "$out/$1.ted4" || { fail "$1" "not the same file"; return; }
     [ ! -f "$out/$1.log" ] || steady "$out/$1.log" | cmp -s "$out/whole.steady" - ||
@@ -52,7 +52,7 @@ for way in 1x2 2x1 2x2 3x1 4x1; do
     same "ranks_$way"
 done
 
-# pid_of RANK NAME: the process of a rank of the run of that name.
+# pid_of RANK NAME: prints the process of a rank of the run of that name.
 pid_of() {
     for pid in $(ls /proc | grep '^[0-9]*$'); do
         grep -qF -e "$out/$2.ted4" "/proc/$pid/cmdline" 2>/dev/null &&
@@ -62,8 +62,8 @@ pid_of() {
     return 1
 }
 
-# disturb NAME N SIGNAL RANK STEP: a rank of N gets a signal when the log of checkpoints, one a
-# step, says STEP; status becomes that of mpirun.
+# disturb NAME N SIGNAL RANK STEP: sends a signal to one rank of N when the log of checkpoints, one
+# per step, reaches STEP; sets status to that of mpirun.
 disturb() {
     rm -f "$out/$1.point"
     ranks "$2" "$1" -j 1 -v --log "$out/$1.log" --checkpoint "$out/$1.point" --checkpoint-every 0 \
@@ -81,8 +81,8 @@ disturb() {
     status=$?
 }
 
-# Changes of the checkpoint that are seen, not all of them; the last moment lies in trials or behind
-# them.
+# The moments count the changes of the checkpoint that are seen, not all of them; the last one lies
+# within or after the trials.
 moment=0
 for at in "1 2 1" "10 1 4" "40 0 3" "80 1 1" "120 0 2"; do
     set -- $at
@@ -130,8 +130,8 @@ cp "$out/half" "$picture"
 apart unreadable_picture "ted4enc: rank 1 of 2: $picture" "$out/broken"
 apart another_training "is not at the same point of the same training" "$out/scene" --seed 9
 
-# Of a scene in which nothing moves, every training starts again without time, and the ranks of one
-# stay together. Motion that does not learn is no better than none.
+# For a scene in which nothing moves, every training starts again without time, and its ranks stay
+# together. Motion that does not learn is no better than none.
 "$TED4_BUILD/ted4scene" things0 -o "$out/still" -f --size 48x32 --cameras 5 --test-cameras 1 \
     --frames 4 --hold 0 >/dev/null 2>&1
 rest="--set stage1=1000 --set probe=0.2 --set lr_motion=0 --set lr_phi=0 --set lr_tau=0"
@@ -147,7 +147,7 @@ else
     fail still_scene "not the same file: $(cat "$out/said")"
 fi
 
-# What all ranks find wrong is said once.
+# An error that all ranks find is reported once.
 $launch -n 3 "$TED4_BUILD/ted4enc-mpi" "$out/broken" $how -o "$out/a.ted4" -q >"$out/said" 2>&1
 status=$?
 if [ $status -ne 0 ] && [ "$(grep -c "^ted4enc: $picture" "$out/said")" = 1 ] &&

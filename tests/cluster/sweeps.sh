@@ -1,8 +1,9 @@
 #!/bin/sh
-# sweeps.sh - a sweep of 12 short trainings by one process, by GNU parallel and by job arrays of
-# Slurm, each of the latter undisturbed and with kill -9 of a training, of a job, of the driver and
-# of the merge: the same table, but for columns of times. Prints lines as a cmocka program does; run
-# by `make test-cluster` from the project's root. What is not installed or does not run is skipped.
+# sweeps.sh - a sweep of 12 short trainings gives the same table, except for columns of times, by
+# one process, by GNU parallel and by job arrays of Slurm, each of the latter undisturbed and with
+# kill -9 of a training, of a job, of the driver and of the merge. Prints lines as a cmocka program
+# does; run by `make test-cluster` from the project's root. What is not installed or does not run is
+# skipped.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 LC_ALL=C; export LC_ALL
@@ -25,7 +26,8 @@ END
 export TED4_TABLE="$out/table.txt"
 times='train_s stage1_s cpu_s stage1_cpu_s decode_ms render_fps integer_ms float32_ms float64_ms'
 
-# in_way WAY COMMAND...: with results and work of their own, and what it says in WAY.said.
+# in_way WAY COMMAND...: runs the command with results and work of its own, and its output in
+# WAY.said.
 in_way() {
     way=$1
     shift
@@ -41,8 +43,8 @@ without_times() {
         END { if (n) print "columns of times are missing" }' "$out/$1/sweep.csv"
 }
 
-# same WAY TEST SECONDS: 12 rows as of one process, and every row that was there before a kill still
-# with its times: nothing was made twice.
+# same WAY TEST SECONDS: checks for the 12 rows of one process, and that rows from before a kill
+# still have their times: nothing was made twice.
 same() {
     without_times "$1" >"$out/$1.rows"
     differ=$(diff "$out/one.rows" "$out/$1.rows") && [ "$(wc -l <"$out/$1.rows")" = 13 ] &&
@@ -58,8 +60,8 @@ same() {
 
 since() { echo $(($(date +%s) - $1)); }
 
-# pids WAY PATTERN: processes of that way, whose command line fits the pattern of awk. Programs of
-# GNU parallel and Slurm have the environment that they were started with.
+# pids WAY PATTERN: prints the processes of that way whose command line matches the pattern.
+# Programs of GNU parallel and Slurm have the environment with which they were started.
 pids() {
     for p in $(grep -lzxF "TED4_RESULTS=$out/$1" /proc/[0-9]*/environ 2>/dev/null); do
         p=${p%/environ}
@@ -67,8 +69,8 @@ pids() {
     done
 }
 
-# kill_when WAY NAME PATTERN CONDITION: at the first moment at which the condition holds and there
-# is such a process; one of them, or all with NAME driver or merge.
+# kill_when WAY NAME PATTERN CONDITION: kills such a process as soon as there is one and the
+# condition holds; if NAME is driver or merge, all of them.
 kill_when() {
     tries=0
     while :; do
@@ -87,7 +89,7 @@ kill_when() {
 count_rows() { find "$out/$1/kept/rows" -name '*.row' 2>/dev/null | wc -l; }
 count_merged() { sed 1d "$out/$1/sweep.csv" 2>/dev/null | wc -l; }
 
-# ---- one process, a run after the other ----
+# ---- one process, one run after the other ----
 
 began=$(date +%s)
 in_way one bench/sweep.sh --jobs 1 --threads 1 && without_times one >"$out/one.rows" &&
@@ -95,7 +97,7 @@ in_way one bench/sweep.sh --jobs 1 --threads 1 && without_times one >"$out/one.r
     { fail one_process "$(tail -n 20 "$out/one.said")"; exit 1; }
 echo "result: one process: 12 rows in $(since "$began") s"
 
-# undisturbed WAY DRIVER...: the sweep as a whole.
+# undisturbed WAY DRIVER...: runs the whole sweep.
 undisturbed() {
     way=$1
     shift
@@ -104,8 +106,9 @@ undisturbed() {
         fail "$way" "$(tail -n 20 "$out/$way.said")"
 }
 
-# disturbed WAY JOB GO_ON DRIVER...: a training, a job (a process that fits JOB), the driver and the
-# merge are killed. GO_ON WAY DRIVER... waits for what the killed driver left, and kills the merge.
+# disturbed WAY JOB GO_ON DRIVER...: kills a training, a job (a process that matches JOB), the
+# driver and the merge. GO_ON WAY DRIVER... waits for what the killed driver left, and kills the
+# merge.
 disturbed() {
     way=$1 job=$2 go_on=$3
     shift 3
@@ -122,7 +125,7 @@ disturbed() {
         fail "$way" "$(tail -n 20 "$out/$way.said")"
 }
 
-# Until no process of that way is left.
+# Waits until no process of that way is left.
 no_process() { while [ -n "$(pids "$1" 'sweep|ted4')" ]; do sleep 0.5; done; }
 
 kill_merge() { kill_when "$1" merge 'sweep\.sh --merge' '[ "$(count_merged $way)" -ge 2 ]'; }
@@ -146,7 +149,7 @@ fi
 
 # ---- Slurm, of this machine alone ----
 
-# The jobs go on without their driver, the merge last.
+# The jobs continue without their driver, the merge last.
 go_on_slurm() {
     kill_merge "$1"
     while [ -n "$(squeue -h)" ]; do sleep 1; done

@@ -15,7 +15,7 @@ int main(void)
 }
 C
 
-# claims EXPECTED NAME FLAGS...: does the build claim class X?
+# claims EXPECTED NAME FLAGS...: checks whether the build claims class X.
 claims() {
     expected=$1 name=$2
     shift 2

@@ -1,7 +1,8 @@
 #!/bin/sh
-# test_inflate_checks.sh - each check of the program that annex L prints is told by a vector of the
-# conformance suite, or GAPS.md says why not (conformance/tests/inflate_checks.py). Prints lines as
-# a cmocka program does; run by `make test` from the project's root.
+# test_inflate_checks.sh - a vector of the conformance suite detects the absence of each check of
+# the program that annex L prints, or GAPS.md says why none can
+# (conformance/tests/inflate_checks.py). Prints lines as a cmocka program does; run by `make test`
+# from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 . tests/support/speak.sh
 need inflate_checks python3

@@ -7,7 +7,7 @@
 . tests/support/speak.sh
 need spec_syntax ted4dec
 
-# differs CHAPTERS FILE: does the trace of that vector differ from the tables in that folder?
+# differs CHAPTERS FILE: whether the trace of that vector differs from the tables in that folder.
 differs() {
     "$TED4_BUILD/ted4dec" "$2" --trace >"$out/trace" || { echo "$2: no trace"; return 0; }
     awk -v bytes="$(wc -c <"$2")" -f tests/spec/syntax.awk "$1"/05-*.md "$1"/09-*.md "$out/trace" \

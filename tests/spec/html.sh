@@ -1,5 +1,6 @@
 #!/bin/sh
-# html.sh FOLDER - the specification as HTML, one page a file, in reading order. Needs pandoc.
+# html.sh FOLDER - writes the specification as HTML, one page per file, in reading order. Needs
+# pandoc.
 # SPDX-License-Identifier: BSD-2-Clause
 set -e
 export LC_ALL=C
@@ -25,8 +26,7 @@ for f in $files; do
 done
 pandoc -f gfm -t html5 --no-highlight --template=spec/html/page.html \
     --lua-filter=spec/html/anchors.lua -M pagetitle=Changelog -o "$out/CHANGELOG.html" CHANGELOG.md
-# Every link within the pages leads to a page, and to an anchor where it names one; figures are
-# there.
+# Every link within the pages leads to a page, and to an anchor where it names one; figures exist.
 bad=0
 for figure in $(grep -ohE 'src="[^":]+"' "$out"/*.html | sed 's/src="//; s/"$//' | sort -u); do
     [ -f "$out/$figure" ] || { echo "no figure $figure"; bad=1; }

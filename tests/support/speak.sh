@@ -1,8 +1,8 @@
-# speak.sh - what a test in shell says, as cmocka programs do. Sourced by tests/*/test_*.sh from the
-# project's root; their last line is `exit $bad`. $out: a folder of the test's own, gone when it
-# ends.
+# speak.sh - lets a test in shell print lines as a cmocka program does. Sourced by tests/*/test_*.sh
+# from the project's root; their last line is `exit $bad`. $out: a folder of the test's own, removed
+# when it ends.
 # SPDX-License-Identifier: BSD-2-Clause
-export LC_ALL=C # awk's numbers, and [a-z]
+export LC_ALL=C # for awk's numbers, and [a-z]
 out=$(mktemp -d)
 trap 'rm -rf "$out"' EXIT
 bad=0
@@ -11,8 +11,9 @@ ok()   { echo "[       OK ] $1"; }
 fail() { echo "[  FAILED  ] $1: $2"; bad=1; }
 skip() { echo "skipped: $2"; echo "[  SKIPPED ] $1"; }
 
-# need TEST PROGRAM...: of $TED4_BUILD, or python3. Without python3, or without a build, the whole
-# test is skipped. A build that lacks a program fails: nobody misses a test that skips itself.
+# need TEST PROGRAM...: programs of $TED4_BUILD, or python3. Without python3, or without a build,
+# the whole test is skipped. If the build lacks a program, the test fails: a skip would go
+# unnoticed.
 need() {
     whole=$1; shift
     for program; do
@@ -26,7 +27,7 @@ need() {
     done
 }
 
-# expect NAME STATUS TEXT COMMAND...: it ends with that status and says that text.
+# expect NAME STATUS TEXT COMMAND...: the command ends with that status and prints that text.
 expect() {
     name=$1 wanted=$2 text=$3; shift 3
     "$@" >"$out/said" 2>&1
@@ -36,7 +37,7 @@ expect() {
     else fail "$name" "status $status: $(cat "$out/said")"; fi
 }
 
-# check NAME FILE PATTERN...: each fixed string stands in the file.
+# check NAME FILE PATTERN...: the file contains each fixed string.
 check() {
     name=$1 file=$2; shift 2
     for p; do

@@ -1,6 +1,6 @@
 # sweep_stand_ins.sh - a table of three runs for bench/sweep.sh, and stand-in programs that make
-# rows of it without any training. Sourced after speak.sh by tests of that script; what they are
-# called with stands in $out/calls.
+# rows of it without any training. Sourced after speak.sh by tests of that script; $out/calls has
+# the arguments of each call.
 # SPDX-License-Identifier: BSD-2-Clause
 cat >"$out/table.txt" <<END
 lambdas 0.001
@@ -11,7 +11,7 @@ scene other room@tint --downscale 2
 run rd whole room,upper,other 1 -
 END
 mkdir -p "$out/build/bench" "$out/bin" "$out/data/room" "$out/data/tint"
-# stand_in PROGRAM: it does what stdin says.
+# stand_in PROGRAM: makes a stand-in that runs the script on stdin.
 stand_in() { { echo '#!/bin/sh'; cat; } >"$out/$1"; chmod +x "$out/$1"; }
 stand_in bin/make </dev/null
 stand_in build/ted4enc <<END

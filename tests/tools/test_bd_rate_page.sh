@@ -53,7 +53,7 @@ rows 0.7 18 1004 | grep -v '^turn-compact-[34]' >"$out/bd_rate.csv" && states &&
 check incomplete "$page" 'Bars: 0 met, 0 missed, 3 not run yet.' \
     '| still -30.0 % | not run yet |' \
     '14 of 16 rows are there' '| turn-compact-4 | not run yet |'
-# Another seed on one scene: the mean over seeds counts, -20 % of -30 and -10.
+# Another seed on one scene: the mean over seeds counts, -20 % for -30 and -10.
 cp "$out/table.txt" "$out/one_seed.txt"
 cat >>"$out/table.txt" <<END
 run seeds before_seed2  still 1,2,3,4 - --set stage2=2000 --seed 2
@@ -74,7 +74,7 @@ said=$(program=parallel.sh takes=" " flags=" " TED4_WORK=$out/work
     . bench/cluster/driver.sh
     echo "$table$patterns")
 [ "$said" = "bd_rate kitchen-*" ] && ok cluster || fail cluster "$said"
-# A run that has no estimate is not known, and nothing else.
+# A run without an estimate is shown as unknown, and as nothing else.
 rows 0.7 18 "" >"$out/bd_rate.csv" && states && make_page || fail page "not made"
 check no_estimate "$page" '| within 1 % | at most +0.00 %: still-before-1 | not run yet |' \
     '| 18.0 | - | 5.0 | 20 |'

@@ -1,7 +1,7 @@
 #!/bin/sh
 # test_edit_program.sh - ted4edit and the options of ted4enc that describe a scene: the chunks are
-# in the file, ted4info shows them, the scene stays the same, and what is wrong is refused with one
-# line, before anything is written. Speaks as cmocka programs do; run by `make test` from the
+# in the file, ted4info shows them, the scene stays the same, and errors are refused with one line,
+# before anything is written. Prints lines as a cmocka program does; run by `make test` from the
 # project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
@@ -32,7 +32,7 @@ equal json "$("$TED4_BUILD/ted4info" "$out/all.ted4" --json | grep -o '"type":"[
 encode again --title 'A pop' --author 'Somebody' --licence CC0-1.0 --cameras --thumbnail
 cmp -s "$out/all.ted4" "$out/again.ted4" && ok deterministic || fail deterministic differ
 
-# Stripped to the last byte; and set again.
+# Stripped down to the last byte, and set again.
 edit "$out/all.ted4" -o "$out/bare.ted4" --strip all
 cmp -s "$out/plain.ted4" "$out/bare.ted4" && ok stripped || fail stripped differ
 edit "$out/all.ted4" -o "$out/some.ted4" --strip THMB --title 'Another' --author '' --up 0,-2,0

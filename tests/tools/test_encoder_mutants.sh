@@ -109,7 +109,7 @@ check some "$out/tree/tests/mutants/MUTANTS.md" '| killed | 0 |' '| not run | 2 
     '## Not run' '| a-gt | ref-encoder/a.c |'
 holds some_hold 1
 
-# Mutants that do not end or do not compile.
+# Mutants that do not terminate or do not compile.
 fresh; sed -i 's/y = 3/y = 4/' "$out/tree/tests/mutants/mutants.list"
 mutants --only a-crash -t 5 >/dev/null 2>&1
 check hang "$csv" ',killed,x/test_one,hang'

@@ -35,7 +35,7 @@ for level in $levels; do
     fi
 done
 
-# Such code was asked for, or the compiler is one that gives it unasked.
+# Code for this machine alone may have been requested, or be the compiler's default.
 if grep -q -e -march= "$TED4_BUILD/how" ||
     ${CC:-cc} -dM -E -x c /dev/null 2>/dev/null | grep -q __AVX__; then
     skip compiled_once "this build is for machines like this one"

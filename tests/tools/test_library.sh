@@ -37,11 +37,11 @@ else
     skip symbols "there is no nm"
 fi
 
-# What the library calls is zlib, xxHash and functions of C that neither print nor end the process
-# nor reach outside; and nothing in it can change (what is constant but for its relocation aside).
+# The library calls only zlib, xxHash and functions of C that neither print nor end the process nor
+# reach outside it; and nothing in it can change (apart from constants that are relocated).
 calls='ted4_.*|XXH.*|(in|de)flate(End|Init_)?|malloc|free|getenv|(mem|str)[a-z]*|bcmp|sqrtf?'
 calls="$calls|_GLOBAL_OFFSET_TABLE_|__cpu_.*|__stack_chk_fail(_local)?|__aarch64_.*"
-# Of _FORTIFY_SOURCE, and what divides 64 bits where registers have 32.
+# Functions of _FORTIFY_SOURCE, and those that divide 64 bits where registers have 32.
 calls="$calls|__(mem|str)[a-z]*_chk|__u?(div|mod|divmod)[ds]i[34]|__aeabi_u?[il]div(mod)?"
 if has nm && has objdump; then
     nm -u "$TED4_BUILD/libted4dec.a" | awk '$1 == "U" { print $2 }' | grep -vxE "$calls" |
@@ -55,7 +55,7 @@ else
     skip calls "there is no nm or no objdump"
 fi
 
-# The types of those functions have not changed, in the eyes of programs that use them.
+# The types of those functions, as programs see them, have not changed.
 if ! has abidiff; then skip abi "there is no abidiff (abigail-tools)"
 elif ! readelf -h "$shared" | grep -q 'X86-64' || ! readelf -S "$shared" | grep -q debug_info; then
     skip abi "not x86-64, or without debug information"
@@ -128,7 +128,7 @@ if ${CC:-cc} -fno-pie -no-pie -I"$usr/include" "$out/address.c" -L"$usr/lib" -lt
     -o "$out/address" 2>"$out/err"; then expect address 0 fine "$out/address"
 else fail address "$(cat "$out/err")"; fi
 
-# Libraries elsewhere than below PREFIX, by somebody whose files others may not read.
+# Libraries outside PREFIX, installed by a user whose files others may not read.
 (umask 077; make install-library B="$TED4_BUILD" DESTDIR='' PREFIX="$out/far/opt" \
     LIBDIR="$out/far/lib") >"$out/said" 2>&1
 check far "$out/far/lib/pkgconfig/ted4.pc" "libdir=$out/far/lib" "prefix=$out/far/opt"
@@ -216,7 +216,7 @@ try:
     raise AssertionError("no such frame")
 except IndexError:
     pass
-# A query that is none is refused, and never taken for another one.
+# An invalid query is refused, and never taken for another one.
 for num, den in ((2**32, 5), (3, 2**32 + 5), (-1, 5), (6, 5), (0, 0), (1, 2**24)):
     try:
         scene.gaussians(num, den)

@@ -1,7 +1,8 @@
 #!/bin/sh
-# test_lints.sh - the lints see what they say they see. In a copy of the tree what each forbids is
-# planted: the lint must then fail, and name every plant. A lint for which nothing is planted here
-# fails this test. Words that the lints would see in this file too are written with a gap ("99""9").
+# test_lints.sh - the lints detect what they claim to detect. Violations of each lint are planted in
+# a copy of the tree: the lint must then fail, and name each of them. A lint for which nothing is
+# planted here fails this test. Words that the lints would see in this file too are written with a
+# gap ("99""9").
 # Prints lines as a cmocka program does; run by `make test` from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
@@ -14,22 +15,22 @@ tar -cf - --exclude='./build*' --exclude=./.git --exclude=./out --exclude=./shar
     tar -xf - -C "$tree"
 cd "$tree" || exit 1
 
-# file NAME LINE...: a planted file, or lines at the end of one that is there
+# file NAME LINE...: plants a file, or lines at the end of an existing one
 file() {
     planted="$planted $1"
     mkdir -p "$(dirname "$1")"
     to=$1; shift
     printf '%s\n' "$@" >>"$to"
 }
-# edit NAME COMMAND...: of sed, which has to change something
+# edit NAME COMMAND...: changes a file by commands of sed, which have to change something
 edit() {
     planted="$planted $1"
     to=$1; shift
     sed -i "$@" "$to"
     ! cmp -s "$to" "$root/$to" || fail "$lint" "nothing to edit in $to"
 }
-# says TEXT...: the lint, run on what is planted so far, fails and prints each text. Then the tree
-# is as before.
+# says TEXT...: the lint, run on what is planted so far, fails and prints each text. Afterwards the
+# tree is as before.
 says() {
     if sh "tests/lint/$lint.sh" >"$out/said" 2>&1; then lost="it passes"; else lost=; fi
     for text; do
@@ -43,9 +44,9 @@ but: $(head -n 40 "$out/said")"; fi
     done
     planted=
 }
-# long N: a word of N letters
+# long N: prints a word of N letters
 long() { printf "%0$1d" 0; }
-# lines N
+# lines N: prints N lines
 lines() { yes '    x++;' | head -n "$1"; }
 
 plant_circles() {

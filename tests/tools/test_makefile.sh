@@ -1,11 +1,12 @@
 #!/bin/sh
 # test_makefile.sh - what the Makefile takes from the environment and what from the command line:
-# its folder, optimisation and machine from the latter alone, the number of its jobs from the
+# build folder, optimisation and machine only from the latter, and the number of jobs from the
 # machine. Prints lines as a cmocka program does; run by `make test` from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 . tests/support/speak.sh
-# value VARIABLE WORD...: what it is in a make of its own, with these words before and after env.
+# value VARIABLE WORD...: prints its value in a make of its own, with these words before and after
+# env.
 value() {
     variable=$1; shift
     printf 'include Makefile\nshow:\n\t@echo "$(%s)"\n' "$variable" |
@@ -30,7 +31,7 @@ cores=$(env -u OMP_NUM_THREADS -u OMP_THREAD_LIMIT nproc)
 gives jobs "-j$cores" JOBS OMP_NUM_THREADS=64 OMP_THREAD_LIMIT=65 make
 gives jobs_asked '' JOBS make -j1
 
-# A name with an apostrophe comes to make-deb.sh as it is.
+# A name with an apostrophe reaches make-deb.sh unchanged.
 name="Pat O'Brien <pat@example.org>"
 mkdir "$out/bin"
 printf '#!/bin/sh\nprintf "%%s\\n" "$MAINTAINER"\n' >"$out/bin/sh"

@@ -1,8 +1,8 @@
 #!/bin/sh
 # test_manual.sh - manual pages and shell completion have the options of each program's help text,
-# and are accepted by mandoc and the shells; file(1) and shared-mime-info tell a TED4 file by our
-# magic. What the machine lacks is skipped. Speaks as cmocka programs do; run by `make test` from
-# the project's root.
+# and are accepted by mandoc and the shells; file(1) and shared-mime-info recognise a TED4 file by
+# our magic. What the machine lacks is skipped. Prints lines as a cmocka program does; run by `make
+# test` from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 . tests/support/speak.sh
@@ -13,16 +13,17 @@ vector=conformance/vectors/content/CNT-pop-0.002.ted4
 has() { command -v "$1" >/dev/null; }
 subcommands=$("$TED4_BUILD/ted4conf" --help | sed -n 's/^  \([a-z]*\) .*/\1/p' | xargs)
 
-# same NAME WANTED FOUND: two files that should be equal.
+# same NAME WANTED FOUND: checks that two files are equal.
 same() { if cmp -s "$2" "$3"; then ok "$1"; else fail "$1" "$(diff "$2" "$3")"; fi; }
 
-# runs NAME COMMAND...: it ends well.
+# runs NAME COMMAND...: checks that the command succeeds.
 runs() {
     name=$1; shift
     if "$@" >"$out/said" 2>&1; then ok "$name"; else fail "$name" "$(cat "$out/said")"; fi
 }
 
-# page_options PAGE COMMAND...: those of the page are those of --help, which fits a terminal.
+# page_options PAGE COMMAND...: checks that the options of the page are those of --help, which fits
+# a terminal.
 page_options() {
     page=$1; shift
     "$TED4_BUILD/$@" --help >"$out/help"
@@ -34,7 +35,7 @@ page_options() {
     same "${page}_page" "$out/wanted" "$out/found"
 }
 
-# options PAGE COMMAND...: those of completion in bash too.
+# options PAGE COMMAND...: the same, and for completion in bash too.
 options() {
     page_options "$@"
     shift
@@ -59,7 +60,7 @@ done >"$out/lacks"
 if [ -s "$out/lacks" ]; then fail sections "$(cat "$out/lacks")"; else ok sections; fi
 
 if has mandoc; then
-    # Its own pages are not where it looks, and not every system is a BSD.
+    # It does not find the pages that these refer to, and expects the name of a BSD.
     mandoc -Tlint "$man"/*.1 | grep -v 'referenced manual not found\|operating system' \
         >"$out/lint"
     if [ -s "$out/lint" ]; then fail mandoc "$(cat "$out/lint")"; else ok mandoc; fi

@@ -7,7 +7,7 @@ set -u
 . tests/support/speak.sh
 need meant ted4enc ted4dec ted4scene
 enc=$TED4_BUILD/ted4enc
-# no_hint NAME STATUS TEXT COMMAND...: like expect, and nothing is suggested.
+# no_hint NAME STATUS TEXT COMMAND...: like expect, but nothing may be suggested.
 no_hint() { expect "$@"; ! grep -q 'did you mean' "$out/said" && ok "$1_no_hint" ||
     fail "$1_no_hint" "$(cat "$out/said")"; }
 

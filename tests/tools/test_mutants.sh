@@ -122,8 +122,8 @@ holds rows_again 3
 if [ "$(wc -l <"$out/suite/mutants.csv")" -eq 3 ]; then ok stale_rows_go;
 else fail stale_rows_go "$(cat "$out/suite/mutants.csv")"; fi
 
-# Places: with threads, by the printed decoder of DEFLATE, and by kernels that no machine has beside
-# this one's.
+# Places: with threads, by the printed decoder of DEFLATE, and by kernels that no machine has
+# together with this one's.
 case $(uname -m) in x86_64) far=neon lacks=NEON;; *) far=v3 lacks=AVX2;; esac
 places() {
     fresh

@@ -1,7 +1,7 @@
 #!/bin/sh
-# test_outputs.sh - files that programs write: where they must not grow, no unfinished one stays and
-# the message says why; one that is replaced keeps its mode and the links to it; a full standard
-# output is an error also of a help text. Prints lines as a cmocka program does; run by `make test`
+# test_outputs.sh - files that programs write: if they may not grow, no unfinished one stays and the
+# message says why; a file that is replaced keeps its mode and the links to it; a full standard
+# output is an error, for a help text too. Prints lines as a cmocka program does; run by `make test`
 # from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
@@ -21,7 +21,7 @@ small="--preset draft --iterations 60,40 --capacity fixed --seed 1 -j 1 -q --set
 mkdir "$out/at"
 
 # ---- a limit of file sizes: 1 KiB ----
-# full NAME COMMAND...: in the folder at, it says why, and leaves nothing.
+# full NAME COMMAND...: in the folder "at", the command says why it fails, and leaves nothing.
 full() {
     name=$1; shift
     expect "full_$name" 3 'File too large' sh -c 'cd "$0" && ulimit -f 2 && "$@"' "$out/at" "$@"
@@ -68,7 +68,7 @@ chmod 640 "$out/at/m.ted4"
 equal mode_transcode "$(mode "$out/at/m.ted4")" -rw-r-----
 ln -s elsewhere/x.ply "$out/at/x.ply"
 chmod 600 "$out/at/m.ted4"
-# Checkpoints are outputs, too, and two runs that share a file do not share its temporary name.
+# Checkpoints are outputs too, and two runs that share a file do not share its temporary name.
 mkdir "$out/at/m.point.part" "$out/at/m.stage1.part"
 : >"$out/at/m.point"
 chmod 600 "$out/at/m.point"
@@ -107,10 +107,10 @@ ln -s elsewhere/x.png "$out/at/x.png"
 expect dangling_sheet 3 "x.png: exists; -f overwrites" "$bin/ted4eval" "$out/a.ted4" "$scene" \
     --sheet "$out/at/x.png"
 
-# ---- what is no file: a pipe, or a device, is neither replaced nor written ----
+# ---- a pipe, or a device, is neither replaced nor written ----
 mkfifo "$out/at/pipe"
 for p in b.ted4 b.ply b.png b.point; do ln -s pipe "$out/at/$p"; done
-# special NAME COMMAND...: in the folder at, it says why, and the pipe is still one.
+# special NAME COMMAND...: in the folder "at", the command says why it fails, and leaves the pipe.
 special() {
     name=$1; shift
     expect "special_$name" 3 "$says" sh -c 'cd "$0" && "$@"' "$out/at" "$@"
@@ -149,7 +149,7 @@ equal ended_render "$(ls -A "$out/ended" | grep -v '^x\.png$')" ""
 long=$(awk 'BEGIN { for (i = 0; i < 4200; i++) printf "n" }')
 expect long_export 3 "File name too long" "$bin/ted4dec" "$out/a.ted4" -o "$long%d.ply" -f -q
 
-# ---- "-", which is no standard output here ----
+# ---- "-", which does not mean standard output here ----
 at() { (cd "$out/at" && "$@"); }
 expect dash_images 3 \
     "ted4eval: --images: bad value -; expected a folder name (./- names such a folder)" \

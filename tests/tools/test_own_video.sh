@@ -29,7 +29,7 @@ printf '1 1 0 0 0 %s 2 3 1 a.png\n\n' "$x" >"$out/images.txt"
 awk -v rate=30 -f tools/cams.awk "$out/list" "$out/cameras.txt" "$out/images.txt" >"$out/exact"
 check digits "$out/exact" "[[$f, 0, 159.5], [0, $f, 119.5], [0, 0, 1]]" "\"dist\": [$k, 0, 0, 0]" \
     "[1, 0, 0, $x]"
-# A name stays what it is in JSON, whatever awk is there.
+# Names reach the JSON unchanged, whichever awk is installed.
 printf 'a"\\b.png\ta"\\b.mp4\n' >"$out/list"
 printf '1 1 0 0 0 0 2 3 1 a"\\b.png\n\n' >"$out/images.txt"
 for awk in awk mawk gawk; do
@@ -138,7 +138,7 @@ looks 50%/walked "11 train, 1 test" "frames      12"
 mkdir "$out/bin"
 printf '#!/bin/sh\n%s "$@"; echo\n' "$(command -v ffprobe)" >"$out/bin/ffprobe"
 chmod +x "$out/bin/ffprobe"
-# A COLMAP that calls the options of the GPU as newer versions do.
+# A COLMAP that has the names that newer versions give to the GPU options.
 cat >"$out/bin/colmap" <<END
 #!/bin/sh
 case "\$*" in

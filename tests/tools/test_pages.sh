@@ -1,9 +1,9 @@
 #!/bin/sh
-# test_pages.sh - every page of bench/ that is written from rows is what these rows give: each page
-# is made anew and compared with the one that is kept, with its charts. Every row says which sources
-# made it. A page that differs was edited by hand, or its rows or the sources changed after it was
-# made: `python3 -m bench.pages NAME` makes it. Prints lines as a cmocka program does; run by `make
-# test` from the project's root.
+# test_pages.sh - every page of bench/ that a program writes agrees with its rows: each page is made
+# anew and compared with the stored one, and so are its charts. Every row says which sources made
+# it. A page that differs was edited by hand, or its rows or the sources changed after it was made:
+# `python3 -m bench.pages NAME` makes it. Prints lines as a cmocka program does; run by `make test`
+# from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 unset TED4_WORK TED4_TABLE TED4_PAGES TED4_NOTES TED4_RESULTS
@@ -30,8 +30,8 @@ page stability stability.md lab
 page zoo zoo.md
 page bd_rate bd_rate.md
 
-# A key is the hash of the options, a hyphen, and the hash of the sources; of what judges too, where
-# that is not the sources.
+# A key is the hash of the options, a hyphen, and the hash of the sources, followed by that of the
+# judging programs if these are others.
 # Those of machines.csv have one hash of both.
 for csv in sweep capacity stability zoo bd_rate machines; do
     if [ $csv = machines ]; then key='[0-9a-f]+'; else key='[0-9a-f]+-[0-9a-f]+([.][0-9a-f]+)?'; fi

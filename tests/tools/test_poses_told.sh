@@ -18,7 +18,7 @@ encode() {
     "$TED4_BUILD/ted4enc" "$out/$scene" -o "$out/$name.ted4" --log "$out/$name.jsonl" $small "$@" \
         -f 2>"$out/$name.err" || fail "$name" "$(cat "$out/$name.err")"
 }
-# What the log says: true or false for each decision.
+# The log has true or false for each decision.
 logged() {
     sed -n 's/.*"event":"poses","rollbacks":0,"moved":[0-9.]*,"refined":\([a-z]*\)}$/\1/p' \
         "$out/$1.jsonl" | tr '\n' ' '

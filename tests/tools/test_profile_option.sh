@@ -1,9 +1,9 @@
 #!/bin/sh
-# test_profile_option.sh - ted4enc --profile: compact is the default, and the last option that says
-# it holds, be it --set, as with --iterations, --lambda and --capacity; a file of profile Compact
-# says so, lies on the grid of positions, and is the same where training was stopped and went on;
-# one of profile Main can be read by decoders of version 1.0. Prints lines as a cmocka program does;
-# run by `make test` from the project's root.
+# test_profile_option.sh - ted4enc --profile: compact is the default, and of several options for it,
+# --set included, the last one counts, as with --iterations, --lambda and --capacity; a file of
+# profile Compact says so, has its positions on the grid, and is the same if training was stopped
+# and resumed; decoders of version 1.0 can read a file of profile Main. Prints lines as a cmocka
+# program does; run by `make test` from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 export LC_ALL=C
@@ -46,8 +46,8 @@ version() { od -An -tu1 -j8 -N2 "$out/$1.ted4" | tr -d ' \n'; } # major, minor (
 [ "$(version main) $(version compact)" = '10 12' ] && ok version ||
     fail version "$(version main) $(version compact)"
 
-# Stopped in the integer stage, after trials of weights, and resumed. A program that ended before it
-# was stopped begins again.
+# Training is stopped in the integer stage, after trials of weights, and resumed. If the program
+# ends before it is stopped, it is run again.
 long='--profile compact --capacity fixed --set stage1=20 --set stage2=2400 --set capacity_share=0.25'
 stop() {
     rm -f "$out/half".*

@@ -266,7 +266,7 @@ mv "$out/kept.csv" "$out/sweep.csv"
 mv "$out/kept_states" "$out/states"
 make_report || fail run "status $?"
 
-# Where one page cannot be written, nothing is replaced, and nothing is left beside it.
+# If one page cannot be written, nothing is replaced, and no other file is left.
 mv "$out/report.md" "$out/kept.md"
 mkdir "$out/report.md"
 : >"$out/charts/old.svg"

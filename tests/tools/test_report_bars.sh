@@ -1,5 +1,5 @@
 #!/bin/sh
-# test_report_bars.sh - what stands beside the verdicts of the report (bench/pages): the first
+# test_report_bars.sh - what the report (bench/pages) shows beside its verdicts: the first
 # definition of a bar that changed, what is delivered, and differences over seeds that are judged
 # together. Prints lines as a cmocka program does; run by `make test` from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
@@ -22,8 +22,8 @@ assert holm({"a": 0.04, "b": 0.03, "c": 0.01}) == {"c"}
 assert holm({"a": 0.02, "b": 0.03}) == {"a", "b"} and holm({}) == set()
 END
 
-# The time to decode a scene: the median over the quantisation steps that are there, since other
-# work may have disturbed a row. With float64 20 ms of networks take the place of 10.
+# The time to decode a scene: the median over the quantisation steps that have a row, since other
+# work may have disturbed one. With float64, the networks take 20 ms instead of 10.
 python3 - >"$out/said" 2>&1 <<END && ok median_ms || fail median_ms "$(cat "$out/said")"
 from bench.pages.report import precision
 from bench.pages.rows import Measured

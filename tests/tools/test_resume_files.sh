@@ -1,7 +1,7 @@
 #!/bin/sh
-# test_resume_files.sh - ted4enc does not write over a checkpoint or a log unless it goes on from
+# test_resume_files.sh - ted4enc does not overwrite a checkpoint or a log unless it continues from
 # there or is told to, and refuses, before it trains, two outputs of one name, options without the
-# one that they belong to, and "-" for a file. Prints lines as a cmocka program does; run by `make
+# one to which they belong, and "-" for a file. Prints lines as a cmocka program does; run by `make
 # test` from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
@@ -17,7 +17,7 @@ small="--preset draft --iterations 30,20 --capacity fixed --seed 1 -j 1 --set in
 enc() { "$TED4_BUILD/ted4enc" "$scene" $small "$@"; }
 cd "$out" || exit 1
 
-# What is there stays as it is.
+# Existing files stay as they are.
 echo mine >c; echo mine >l
 expect checkpoint 3 'ted4enc: c: exists; --resume goes on from it, -f overwrites' \
     enc -o a.ted4 --checkpoint c
@@ -45,7 +45,7 @@ expect lonely_every 3 'ted4enc: --checkpoint-every: only with --checkpoint (see 
     enc -o w.ted4 --checkpoint-every 60
 expect lonely_resume 3 'ted4enc: --resume: only with --checkpoint (see --help)' \
     enc -o w.ted4 --resume
-# Standard output takes none of these files.
+# None of these files can go to standard output.
 for o in checkpoint stage1 log; do
     expect dash_$o 3 "ted4enc: --$o: bad value -; expected a file name (./- names such a file)" \
         enc -o w.ted4 --$o -

@@ -27,7 +27,7 @@ runs shows_failures 1 '[  FAILED  ] b: why' "$out/wrong"
 runs breaks_off 1 'broken ... FAILED (1)' "$out/broken"
 runs nothing 1 'empty ... FAILED: ran nothing' "$out/empty"
 
-# What programs find around them.
+# The environment of programs.
 cat >"$out/finds" <<END
 #!/bin/sh
 printf '%s\n' "\$LC_ALL" "\${POSIXLY_CORRECT-unset}" "\$TMPDIR" >"$out/found"
@@ -39,7 +39,7 @@ chmod +x "$out/finds"
 mkdir "$out/a b" "$out/build"
 runs finds 0 '1 passed, 0 failed' "$out/finds"
 same() { if [ "$2" = "$3" ]; then ok "$1"; else fail "$1" "$2, not $3"; fi; }
-# place NAME TMPDIR: programs get another folder, below the build, which is gone afterwards.
+# place NAME TMPDIR: programs get another folder, below the build, which is removed afterwards.
 place() {
     expect "$1" 0 'temporary files are made in ' env LC_ALL=C.UTF-8 POSIXLY_CORRECT=1 TMPDIR="$2" \
         TED4_BUILD="$out/build" sh tests/run.sh "$out/finds"
@@ -48,12 +48,12 @@ place() {
 }
 place space "$out/a b"
 place absent "$out/none"
-# A build whose path has a space gets one without, too.
+# A build whose path has a space gets a path without one.
 mkdir "$out/a build"
 : >"$out/a build/program"
 expect build_space 0 '1 passed' env TED4_BUILD="$out/a build" sh tests/run.sh "$out/finds"
 same build_listed "$(cat "$out/listed") $(wc -w <"$out/built")" 'program 1'
-# A folder that runs nothing: a file system of its own, where this user can have one.
+# A folder in which no program can run: a file system of its own, if this user can mount one.
 mkdir "$out/still"
 if unshare -rm mount -t tmpfs -o noexec none "$out/still" 2>/dev/null; then
     expect noexec 0 'temporary files are made in ' env TMPDIR="$out/still" TED4_BUILD="$out/build" \

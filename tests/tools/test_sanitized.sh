@@ -1,10 +1,10 @@
 #!/bin/sh
 # test_sanitized.sh - ted4enc, ted4eval and ted4scene, built with the address and the undefined
 # behaviour sanitizer in a folder of their own, make scenes, train on them and judge the files. The
-# trainings are short, and together they go through everything that training decides: writes
-# outside an array, which other machines may answer with a crash, end them. The number of anchors is
-# never a multiple of a block's lanes. Prints lines as a cmocka program does; run by `make test`
-# from the project's root.
+# trainings are short, and together they exercise every decision of training: a write outside an
+# array, which may crash on other machines, ends them. The number of anchors is never a multiple of
+# a block's lanes. Prints lines as a cmocka program does; run by `make test` from the project's
+# root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 . tests/support/speak.sh
@@ -14,9 +14,9 @@ flags='-fsanitize=address,undefined -fno-sanitize-recover=all'
 build=$TED4_BUILD/sanitized
 unset ASAN_OPTIONS UBSAN_OPTIONS
 
-# works COMMAND...: a sanitized program that does nothing, run by this, ends each time. The older
-# runtimes crash or never end if the kernel places what is mapped where their shadow has to lie,
-# which is up to chance; and under ptrace or a limit of memory.
+# works COMMAND...: whether a sanitized program that does nothing, run by this command, always ends.
+# Older runtimes crash or never end if the kernel happens to map something where their shadow memory
+# has to lie; also under ptrace or a limit of memory.
 echo 'int main(void) { return 0; }' >"$out/nothing.c"
 # shellcheck disable=SC2086 # several flags
 ${CC:-cc} $flags "$out/nothing.c" -o "$out/nothing" 2>"$out/said" ||
@@ -36,7 +36,8 @@ MAKEFLAGS='' make -s "-j$cores" B="$build" OPT=-O1 CFLAGS="$flags" LDFLAGS="$fla
     "$build/ted4enc" "$build/ted4eval" "$build/ted4scene" >"$out/said" 2>&1 ||
     { fail build "$(tail -n 20 "$out/said")"; exit 1; }
 
-# train NAME SCENE SCENE'S_OPTIONS [OPTION...]: a scene, a training of it, its held-out pictures.
+# train NAME SCENE SCENE'S_OPTIONS [OPTION...]: makes a scene, trains on it, and judges its held-out
+# pictures.
 train() {
     name=$1 scene=$2 shape=$3; shift 3
     file=$out/$name.ted4

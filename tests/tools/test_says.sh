@@ -21,7 +21,7 @@ mkdir -p "$out/cache"
 XDG_CACHE_HOME=$out/cache
 export XDG_CACHE_HOME
 
-# What was found, for programs.
+# What was found, in a form for programs.
 "$enc" "$out/scene" --check --json 2>/dev/null | tr -d '\n' >"$out/json"
 check check_json "$out/json" '{"error":null,"layout":"D-NeRF","train":20,"test":4,"cameras":6,' \
     '"frames":4,"sizes":[[32,24],[32,24]],' '"rate":'
@@ -30,9 +30,8 @@ expect check_json_missing 3 "$out/none: no such folder" "$enc" "$out/none" --che
 "$enc" "$out/none" --check --json 2>/dev/null >"$out/json"
 check check_json_error "$out/json" "{\"error\":\"$out/none: no such folder"
 
-# So is what ends a training, or --transcode, before there is a file: one object, whose text is that
-# of the message. Wrong usage is none.
-# ended NAME TEXT ARGUMENT...
+# An error that ends a training, or --transcode, before there is a file, is also one object, with
+# the text of the message. Wrong usage gives none. ended NAME TEXT ARGUMENT...
 ended() {
     name=$1 text=$2; shift 2
     "$enc" "$@" --json -q 2>"$out/err" >"$out/json"
@@ -47,7 +46,7 @@ ended json_transcode "$out/there.ted4: exists; -f overwrites" --transcode \
 "$enc" --json >"$out/json" 2>/dev/null
 equal json_usage "$? $(cat "$out/json")" "3 "
 
-# With something wrong, that alone.
+# If something is wrong, only that is reported.
 mkdir "$out/broken"
 cp -R "$out/scene/." "$out/broken"
 first=$(find "$out/broken" -name '*.png' | sort | head -n 1)
@@ -55,7 +54,7 @@ head -c 100 "$first" >"$out/part" && cp "$out/part" "$first"
 "$enc" "$out/broken" --check 2>"$out/err" >"$out/text"
 equal check_wrong "$? $(cat "$out/text")" '3 '
 
-# Names that are not UTF-8, and a message that is cut inside a letter, are JSON all the same.
+# Names that are not UTF-8, and a message that is cut inside a character, still give valid JSON.
 odd=$(printf 'no\377'); unknown=$(printf '\357\277\275')
 "$enc" "$out/scene" --check --json --hold-out "a$(printf '\303\244%.0s' $(seq 120))" 2>/dev/null \
     >"$out/json"
@@ -73,7 +72,7 @@ odd_files() {
     "$TED4_BUILD/ted4info" "$out/$odd.ted4" --validate --json >"$out/json"
     check info_json_bytes "$out/json" "\"file\":\"$out/no$unknown.ted4\""
 }
-# Some file systems take names in UTF-8 only.
+# Some file systems accept only names in UTF-8.
 if (: >"$out/$odd.ted4") 2>/dev/null; then odd_files; else
     skip odd_files "no file here can be called that"
 fi
@@ -144,14 +143,14 @@ expect eval 0 "ted4eval: comparing $out/x.ted4 with $out/scene" "$TED4_BUILD/ted
 expect eval_other 3 "x.ted4: cannot be of $out/longer: 4 times in the file, 5 in the scene" \
     "$TED4_BUILD/ted4eval" "$out/x.ted4" "$out/longer" -q
 expect eval_anyway 0 'psnr ' "$TED4_BUILD/ted4eval" "$out/x.ted4" "$out/longer" --anyway
-# Pictures alone do not tell another scene from too short a training.
+# Pictures alone do not distinguish another scene from too short a training.
 "$enc" "$out/scene" -o "$out/young.ted4" $small --iterations 1,1 -q
 expect eval_young 3 "young.ted4: may not be of $out/scene, or is hardly trained: its pictures are " \
     "$TED4_BUILD/ted4eval" "$out/young.ted4" "$out/scene" -q
 expect eval_young_anyway 0 'psnr ' "$TED4_BUILD/ted4eval" "$out/young.ted4" "$out/scene" --anyway
 expect eval_first_times 0 'psnr ' "$TED4_BUILD/ted4eval" "$out/x.ted4" "$out/longer" --max-frames 4
 
-# One is no plural.
+# A single one is not in the plural.
 "$TED4_BUILD/ted4scene" still -o "$out/one" --layout calibration --size 32x24 --frames 1 \
     --cameras 1 --test-cameras 0 -j 1 2>/dev/null
 "$enc" "$out/one" --check 2>"$out/err" >/dev/null

@@ -1,7 +1,7 @@
 #!/bin/sh
 # test_sbom.sh - the bill of materials is well-formed SPDX 2.3, names every file of the source tree
-# with its hash, and is the same when it is made again. Speaks as cmocka programs do; run by `make
-# test` from the project's root.
+# with its hash, and is the same when it is made again. Prints lines as a cmocka program does; run
+# by `make test` from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 . tests/support/speak.sh

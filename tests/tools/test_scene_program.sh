@@ -1,7 +1,8 @@
 #!/bin/sh
-# test_scene_program.sh - the command line of ted4scene: wrong values are told with their option and
-# what is expected; scenes without test cameras load; and a run that is stopped leaves no unfinished
-# file. Prints lines as a cmocka program does; run by `make test` from the project's root.
+# test_scene_program.sh - the command line of ted4scene: wrong values are reported with their option
+# and what is expected; scenes without test cameras load; and a run that is stopped leaves no
+# unfinished file. Prints lines as a cmocka program does; run by `make test` from the project's
+# root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 . tests/support/speak.sh
@@ -40,7 +41,7 @@ expect frames_of_turns 3 "ted4scene: --frames: not with --turns, where each came
     "$TED4_BUILD/ted4scene" toys -o "$out/none" --turns --frames 4
 if [ ! -e "$out/none" ]; then ok nothing_made; else fail nothing_made "a folder"; fi
 
-# No file that lists nothing is made. Of Neu3D the first camera is held out, even if it is alone.
+# No empty list is written. In Neu3D the first camera is held out, even if it is the only one.
 for layout in blender nerfstudio colmap colmap-text hypernerf calibration llff; do
     for split in "" "--split val" "--split times --hold 2"; do
         case $layout:$split in *:|blender:*|nerfstudio:*) ;; *) continue ;; esac
@@ -52,7 +53,7 @@ for layout in blender nerfstudio colmap colmap-text hypernerf calibration llff; 
     done
 done
 
-# A run that is stopped as soon as its first picture has a name.
+# A run is stopped as soon as its first picture has a name.
 for kind in "--background room --jpeg baseline" "--background transparent --png 16" \
     "--background room"; do
     folder="$out/stopped"

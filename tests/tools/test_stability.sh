@@ -215,7 +215,7 @@ check two_encoders "$page" \
     '| calm | 33.10† | -0.50; -10.0 %† (1 of 2) |'
 sed -i 's/^older /done /' "$out/states"
 
-# Notes on rules explain a failure when all of its rules have one.
+# Notes on rules explain a failure if all of its rules have one.
 rules_explained gap
 make_page
 check one_rule "$page" '(1 of 3) | **unexplained** |'

@@ -1,8 +1,8 @@
 #!/bin/sh
 # test_transcode.sh - ted4enc --transcode: a file goes from profile Main to Compact and comes back,
 # with the same tiers on the way and at the end, and a second time byte for byte; a grid whose order
-# is not that of profile Main is sorted, with a warning; chunks that may be untrue are dropped; what
-# is wrong is said, and options of a training are refused. Prints lines as a cmocka program does;
+# is not that of profile Main is sorted, with a warning; chunks that may be untrue are dropped;
+# errors are reported, and options of a training are refused. Prints lines as a cmocka program does;
 # run by `make test` from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
@@ -12,7 +12,7 @@ enc=$TED4_BUILD/ted4enc
 dec=$TED4_BUILD/ted4dec
 vectors=conformance/vectors
 
-# Tiers of a file but T0, which are not a matter of the profile.
+# The tiers of a file that do not depend on the profile: all but T0.
 tiers() { "$dec" --ted4-run "$1" --tiers T1,T2,T3,T4; }
 there() { "$enc" --transcode "$1" --profile compact -q -f -o "$out/c.ted4"; }
 back() { "$enc" --transcode "$out/c.ted4" --profile main -q -f -o "$out/m.ted4"; }
@@ -22,7 +22,7 @@ for f in "$vectors"/content/CNT-pop-0.002.ted4 "$vectors"/content/CNT-still-0.00
     name=$(basename "$f" .ted4)
     there "$f" && tiers "$f" >"$out/before" && tiers "$out/c.ted4" >"$out/after" &&
         cmp -s "$out/before" "$out/after" && ok "same_$name" || fail "same_$name" "other tiers"
-    # Bytes that zlib deflates anew are those of this machine's zlib from the first time on.
+    # After the first round, deflated bytes are those of this machine's zlib and no longer change.
     back && tiers "$out/m.ted4" >"$out/after" && cmp -s "$out/before" "$out/after" &&
         ok "back_$name" || fail "back_$name" "other tiers"
     mv "$out/m.ted4" "$out/first.ted4"
@@ -36,7 +36,7 @@ expect named 0 'Compact profile' "$TED4_BUILD/ted4info" "$out/c.ted4"
 "$TED4_BUILD/ted4info" --validate "$out/c.ted4" >"$out/said" 2>&1
 grep -q adv.minor "$out/said" && fail minor "$(cat "$out/said")" || ok minor
 
-# R-EDT-003: deflated bytes whose mode stays are those that the file had, and not ours.
+# R-EDT-003: deflated bytes whose mode stays are copied from the file, not deflated again.
 for f in container/CON-pack-all header/HDR-bank_dim-1-bank header/HDR-bank_dim-1-concat; do
     f=$vectors/valid/$f.ted4
     name=$(basename "$f" .ted4)
@@ -73,7 +73,7 @@ expect scene_too 3 'no scene folder' "$enc" scene --transcode "$grid" -f -o "$ou
 expect which_profile 3 'expected main or compact' "$enc" --profile small --transcode "$grid" \
     -f -o "$out/a.ted4"
 
-# Options of training do not go with it: none is silently without effect, and nothing is written.
+# Options of training are refused beside it: none is silently ignored, and nothing is written.
 cp "$grid" "$out/kept.ted4"
 alone() {
     name=$1; shift
@@ -95,7 +95,7 @@ cmp -s "$grid" "$out/kept.ted4" && [ ! -e "$out/log" ] && ok alone_writes_nothin
     fail alone_writes_nothing "a file"
 expect goes_with 0 '"bytes":' "$enc" --transcode "$grid" --profile main -o "$out/a.ted4" -f -j 1 \
     -q -v --json
-# The object says what that of a training says of a file, here of the one that was written.
+# The JSON object says about the new file what that of a training says about its file.
 for profile in main compact; do
     "$enc" --transcode "$grid" --profile $profile -o "$out/a.ted4" -f -q --json >"$out/said" 2>&1
     "$TED4_BUILD/ted4info" "$out/a.ted4" --json >"$out/json"

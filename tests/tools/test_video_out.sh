@@ -1,7 +1,7 @@
 #!/bin/sh
-# test_video_out.sh - ted4dec --render FILE.mp4 and -o -: what ffmpeg is asked for and given, what
-# is said when it is missing or fails, and that no half of a file stays; one time on standard
-# output. Speaks as cmocka programs do; run by `make test` from the project's root.
+# test_video_out.sh - ted4dec --render FILE.mp4 and -o -: what ffmpeg is asked for and given, the
+# message if it is missing or fails, and that no unfinished file stays; one time on standard output.
+# Prints lines as a cmocka program does; run by `make test` from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 export LC_ALL=C
@@ -15,7 +15,7 @@ camera() { printf '{"width":%d,"height":3,"fx":4,"fy":4,"cx":2,"cy":1,"R":[1,0,0
 echo "[$(camera 5 4 0), $(camera 5 5 1)]" >"$out/two.json"
 echo "[$(camera 5 4 0), $(camera 6 5 1)]" >"$out/mixed.json"
 
-# An ffmpeg that keeps what it gets; FAIL=1: that fails; FAIL=2: that ends early as if all was well.
+# An ffmpeg that stores its input; FAIL=1: it fails; FAIL=2: it ends early as if all was well.
 mkdir "$out/bin"
 cat >"$out/bin/ffmpeg" <<'END'
 #!/bin/sh
@@ -55,7 +55,7 @@ expect missing 3 'videos need the program ffmpeg' env PATH="$out/none" "$dec" "$
     --render "$out/b.mp4" --camera "$out/two.json"
 equal nothing_left "$(ls "$out" | grep -c '^b.mp4')" 0
 
-# Killed while ffmpeg writes: neither it nor its half of a file stays.
+# If the program is killed while ffmpeg writes, neither ffmpeg nor its unfinished file stays.
 cat >"$out/bin/ffmpeg" <<'END'
 #!/bin/sh
 for last; do :; done
@@ -95,7 +95,7 @@ else
     skip real "there is no ffmpeg"
 fi
 
-# Standard output holds one file, in a format that is named.
+# Standard output gets one file, in a format that is named.
 "$dec" "$vector" -o "$out/one.ply" --time 0 -q
 "$dec" "$vector" -o - --time 0 -q >"$out/two.ply"
 cmp -s "$out/one.ply" "$out/two.ply" && ok stdout || fail stdout "differs"

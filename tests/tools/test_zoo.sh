@@ -1,6 +1,6 @@
 #!/bin/sh
-# test_zoo.sh - the cases of bench/zoo.txt, made small: all can be read; those whose files alone
-# differ from another case's are trained to the same bytes; and some short trainings end well.
+# test_zoo.sh - the cases of bench/zoo.txt, made small: all can be read; cases that differ from
+# another one only in their files are trained to the same bytes; and some short trainings succeed.
 # Prints lines as a cmocka program does; run by `make test` from the project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
@@ -18,8 +18,8 @@ awk '$1 == "case" { n++; twin[$2] = $3 }
          exit bad
      }' bench/zoo.txt >"$out/said" && ok table || fail table "$(cat "$out/said")"
 
-# made NAME SIZE OPTIONS: the scene of a case, in $out/SIZE/NAME; $reading: the options for reading
-# it.
+# made NAME SIZE OPTIONS: makes the scene of a case in $out/SIZE/NAME; sets $reading, the options
+# for reading it.
 made() {
     folder=$out/$2/$1
     where=$(awk -F'|' -v s="$1" '$3 == s { print $4 }' "$out/runs")
@@ -34,8 +34,8 @@ made() {
 
 tiny="24x16 --cameras 5 --test-cameras 1"
 
-# Each case gives the warning that it should, and no other. The search for points takes seconds: of
-# the cases that need it, those that are read like others are left out.
+# Each case gives the warning that it should, and no other. The search for points takes seconds, so
+# the cases that need it and are read like others are left out.
 for name in $(awk -F'|' '{ print $3 }' "$out/runs"); do
     case $name in random|white10|large10|turns10|room-box10|*-none) continue ;; esac
     if [ "$name" = videos ] && ! command -v ffmpeg >/dev/null; then
@@ -60,7 +60,7 @@ done
 
 # ---- the same pictures, written differently ----
 
-# hash_of NAME: the hash of the file after a few training steps.
+# hash_of NAME: prints the hash of the file after a few training steps.
 hash_of() {
     made "$1" $tiny
     "$TED4_BUILD/ted4enc" "$folder" $reading -o "$out/$1.ted4" --preset draft --iterations 30,10 \
@@ -84,7 +84,7 @@ same clear-dark toys
 
 # ---- short trainings ----
 
-# trained NAME: PSNR of training pictures in $psnr, that of the moving part in $moving.
+# trained NAME: sets $psnr, the PSNR of training pictures, and $moving, that of the moving part.
 trained() {
     made "$1" 48x32
     "$TED4_BUILD/ted4enc" "$folder" -o "$out/$1.ted4" --preset draft --iterations 1500,400 \
@@ -109,8 +109,8 @@ fi
 
 # ---- the moving part ----
 
-# Pictures of two pixels, the second of which is in the mask: errors of 3, 4 and 12 there, so a mean
-# square of 169 / 3.
+# Pictures of two pixels, the second of which is in the mask, with errors of 3, 4 and 12: the mean
+# square is 169 / 3.
 python3 - "$out/hand" <<'END'
 import os, struct, sys, zlib
 def png(path, kind, row):

@@ -80,8 +80,8 @@ cp "$out/calls" "$out/before"
 runs held-default-1 broken-default-1 >"$out/said" 2>&1
 cmp -s "$out/calls" "$out/before" && ok nothing_twice || fail nothing_twice "$(cat "$out/said")"
 
-# For a training of 50 s: an estimate after 4 s does not count; that after 12 s is 60 s in all, that
-# after 40 s 45 s.
+# For a training of 50 s: an estimate after 4 s does not count; that after 12 s is 60 s in total,
+# that after 40 s is 45 s.
 step() { echo '{"step":1,"stage":"1","psnr":'$3',"bytes":9,"seconds":'$1',"left":'$2'}'; }
 { step 4 100 10; step 12 48 20; step 40 5 21.50; } >"$out/steps"
 told=$(python3 -m bench.pages predicted 50.00 "$out/steps")
@@ -144,8 +144,8 @@ check met "$page" '| at most 1 dB below | 3 of 3† | not run yet |' \
     '| at least 22 dB | 1 of 1 | not run yet |' '| never | 2 times† | **missed** |' \
     '| broken | `ted4scene toys --points none` | kind | not run yet |'
 
-# What is not known is neither 0 nor 100 % off: an estimate and the last bytes of odd-alone, and
-# what moves on turns.
+# Unknown values are neither 0 nor 100 % off: an estimate and the last bytes of odd-alone, and the
+# moving part of turns.
 awk -F, -v OFS=, '/^odd-alone/ { $19 = ""; $22 = "" } /^turns/ { $10 = "" } { print }' \
     "$out/kept.csv" >"$out/page/zoo.csv"
 make_page
