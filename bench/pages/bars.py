@@ -70,9 +70,9 @@ class Bars:
         """Of those met, how many are not by their first definition."""
         met = [first.ok for _, _, verdict, first in self.changed if verdict == "met"]
         other = [f"{met.count(ok)} {word}" for ok, word in (
-            (False, "would be missed"), ("?", "could not be said"), (None, "could not be judged"))
+            (False, "would be missed"), ("?", "would be undecided"), (None, "could not be judged"))
                  if ok in met]
         if not other:
             return ""
-        return (f" By their [first definition]({page}#definitions-that-changed), of the "
-                f"{self.verdicts['met']} met {' and '.join(other)}.")
+        return (f" Of the {self.verdicts['met']} met, {' and '.join(other)} by the [first "
+                f"definition]({page}#definitions-that-changed).")

@@ -75,7 +75,7 @@ def made_with(runs):
     old = sum(run.is_old() for run in runs)
     return ((f", {equal} of them made by earlier sources that write the same bytes"
              " ([equal.csv](equal.csv))" if equal else "")
-            + (f", {old} of them older than the sources (†)" if old else ""))
+            + (f", {old} of them older than the present sources (†)" if old else ""))
 
 
 class Runs:

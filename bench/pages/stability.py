@@ -77,8 +77,9 @@ def write(runs, charts, results, _):
     seed_bars(lab)
     head = Page()
     head.heading("The stability lab", 1)
-    head.prose("""`make stability` writes this page from [stability.csv](stability.csv). The bars
-        are those of the lab, by number; "not run yet" stands wherever a run is missing.""")
+    head.prose("""The lab trains the whole method and its variants on small, hard scenes, with
+        several seeds, and shows what fails and why. `make stability` writes this page from
+        [stability.csv](stability.csv); "not run yet" stands wherever a run is missing.""")
     head.prose(runs.summary() + ".")
     head.prose(lab.bars.summary())
     lab.bars.show(head, "command, then `python3 -m bench.pages stability`")

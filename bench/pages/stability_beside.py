@@ -14,11 +14,11 @@ def points_section(lab):
     if not wanted:
         return
     page.heading("Initial points as structure from motion gives them")
-    page.prose("""The initial points of the lab's scenes lie on true surfaces, of moving things too,
-        at all times, with true colours. Here the same scenes begin with a quarter as many points
-        (`--points sfm`): on what never moves only, less exact in depth, and with the tint of the
-        camera that sees them. The table shows PSNR in dB of the whole method: mean of all held-out
-        pictures / worst of all, as means over seeds.""")
+    page.prose("""The initial points of the lab's scenes lie on true surfaces, of moving objects
+        too, at all times, and have true colours. Here the same scenes begin with a quarter as many
+        points (`--points sfm`), which lie only on what never moves, are less exact in depth, and
+        have the tint of the camera that sees them. The table shows PSNR in dB of the whole method:
+        mean of all held-out pictures / worst of all, as means over seeds.""")
     page.table("scene", "on surfaces", "as structure from motion", "difference of the mean")
     for scene in wanted:
         plain = lab.cell(scene.removesuffix("_sfm"), "whole")
@@ -62,9 +62,9 @@ def parts_section(lab):
         return
     page.heading("Without what was made for real captures")
     page.prose("""Each variant lacks one part: *nodropout* the dropout of anchors, *noposes* the
-        refinement of poses, *noclosing* the closing of anchors whose motion is not worth its bits.
-        The table shows the PSNR of the whole method in dB, and by how much each variant's PSNR, in
-        dB, and bytes differ from it, as means over seeds.""")
+        refinement of poses, *noclosing* the rule that stops anchors whose motion is not worth its
+        bits. The table shows the PSNR of the whole method in dB, and by how much each variant
+        differs from it in PSNR (dB) and in bytes, as means over seeds.""")
     page.table("scene", "whole", *variants)
     for scene in lab.scenes:
         whole = lab.cell(scene, "whole")
@@ -81,10 +81,10 @@ def colours_section(lab):
         return
     page.heading("Colours, exposures, and cameras that take turns")
     page.prose("""*dusk0* is *dusk* without drifting exposures, and *tints40* is *tints4* without
-        tints; *nocolour* trains without any correction. *tints4* is judged by held-out times of its
-        own cameras, as they are: a file has one look, so that correction makes pictures of cameras
-        that differ in colour worse ([limits](../doc/limits.md)). *relay* has cameras that take
-        turns. The table shows PSNR in dB as above.""")
+        tints; *nocolour* trains without any correction of colours. *tints4* is judged by
+        held-out times of its own cameras, as they are: a file has one look, so that correction
+        makes pictures of cameras that differ in colour worse ([limits](../doc/limits.md)). *relay*
+        has cameras that take turns. The table shows PSNR in dB as above.""")
     page.table("scene", "variant", "PSNR", "bytes")
     for cell in wanted:
         page.row(cell.scene, cell.variant, quality_cell(cell), fixed(cell.mean("bytes"), 0))

@@ -15,17 +15,17 @@ WEAK_GAP = 2            # dB below the table's first scene, which nothing makes 
 RULES = {
     "crash": ("C", "ted4enc crashed"),
     "error": ("E", "ted4enc gave up with an error"),
-    "nan": ("N", "something is not finite: the decoder refuses a time, or a number of the log is "
-                 "none"),
+    "nan": ("N", "a value is not finite: the decoder refuses a time, or the log has a value that "
+                 "is no number"),
     "diverges": ("D", "the distortion ends above its start"),
-    "rollback": ("B", "the monitor of the trainer went back to a checkpoint"),
+    "rollback": ("B", "the divergence monitor rolled training back"),
     "gap": ("W", f"the worst frame lies more than {WORST_GAP} dB below the whole method's"),
     "floor": ("F", f"the worst frame lies below {WORST_FLOOR} dB"),
     "drop": ("P", f"the worst frame lies more than {WORST_DROP} dB below the mean of all frames"),
     "out": ("O", f"more than {100 * MOST_OUT:g} % of the drawn anchors are thrown out of every "
                  "picture"),
-    "escapes": ("X", f"more than one of {1 / MOST_ESCAPES:g} symbols needs an escape"),
-    "ends": ("R", f"more than {100 * MOST_ENDS:g} % of symbols or contexts stand at the ends of "
+    "escapes": ("X", f"more than one in {1 / MOST_ESCAPES:g} symbols needs an escape"),
+    "ends": ("R", f"more than {100 * MOST_ENDS:g} % of symbols or contexts lie at the ends of "
                   "their ranges"),
     "spread": ("S", f"seeds differ by more than {MOST_SPREAD} dB in mean PSNR"),
     "weak": ("L", f"the whole method's mean PSNR lies more than {WEAK_GAP} dB below its own on the "

@@ -20,10 +20,10 @@ def quality_cell(cell):
 def quality_section(lab):
     page = lab.page
     page.heading("Every scene and variant")
-    page.prose("""The table shows PSNR in dB on held-out pictures that training never saw, drawn
-        from the decoded file: mean of all / worst of all, both as means over seeds; ± half the span
-        of the mean over seeds. Bold letters mark failures, with the number of seeds where not all
-        fail:""")
+    page.prose("""The table shows PSNR in dB on held-out pictures, rendered from the decoded file:
+        mean of all / worst of all, both as means over seeds; ± is half the span of the mean over
+        seeds. A bold letter marks a failure, and is followed by the number of seeds that fail
+        unless all do:""")
     page.say()
     for letter, meaning in RULES.values():
         page.item(f"**{letter}**: {meaning}")
@@ -38,14 +38,14 @@ def quality_section(lab):
 def out_section(lab):
     page = lab.page
     page.heading("Anchors thrown out of view")
-    page.prose("""An anchor is *thrown out* when, at a time at which something trains it, it is
-        drawn (one of its Gaussians is at least as opaque as the rasteriser asks, 1/255) while its
-        centre (the mean of those of its Gaussians) lies in the picture of none of that time's
-        training cameras, although at another such time its centre lies where one of these same
-        cameras sees it: so the anchor was moved, not the camera. The table shows the share of the
-        anchors that are drawn at all, and the largest displacement while drawn, in sizes of the
-        scene (the longest side of the box between the 1st and the 99th percentile of its initial
-        points). Both are means over seeds.""")
+    page.prose("""An anchor is *thrown out* if its own motion, not a camera's, takes it out of view.
+        That is the case if, at a time at which something trains it, it is drawn (one of its
+        Gaussians reaches the rasteriser's least opacity, 1/255), but its centre (the mean of its
+        Gaussians' centres) lies in no picture of that time's training cameras, although one of
+        these cameras sees it at another such time. The table shows the share of the drawn anchors
+        that are thrown out, and the largest displacement of a drawn anchor, relative to the size of
+        the scene (the longest side of the box between the 1st and the 99th percentile of its
+        initial points). Both are means over seeds.""")
     page.table("scene", *lab.variants)
     for scene in lab.scenes:
         page.row(scene, *("-" if not cell.there else
@@ -68,14 +68,15 @@ def term_cell(cell, column):
 def numbers_section(lab):
     page = lab.page
     page.heading("What the whole method's runs measured")
-    page.prose("""All numbers are means over seeds, but for gradients and rollbacks, which are the
-        most of them, and *not finite*, which is their sum. *Dead* is the share of Gaussians whose
-        opacity is 0 at all times. *Ends* are shares of symbols, steps, contexts, sigma indices and
-        activation widths at the ends of their ranges. *Loss* is the distortion at the first line of
-        the log and at the last, as running means over about 100 steps. *Clamped* counts values of
-        anchors at an end of their range when training ended. *Not finite* counts pictures and times
-        that the decoder refused, Gaussians that training left out, and lines of the log. *Peak* is
-        the largest norm of a gradient as a multiple of its term's usual one.""")
+    page.prose("""All numbers are means over seeds, except gradients and rollbacks, which are the
+        maximum over them, and *not finite*, which is their sum. *Dead* is the share of Gaussians
+        whose opacity is 0 at all times. *Ends* are shares of symbols, steps, contexts, sigma
+        indices and activation widths at the ends of their ranges. *Loss* is the distortion in the
+        first and in the last line of the log, as running means over about 100 steps. *Clamped*
+        counts values of anchors that were at an end of their range when training ended. *Not
+        finite* counts pictures and times that the decoder refused, Gaussians that training left
+        out, and faulty lines of the log. *Peak* is the largest norm of a gradient as a multiple of
+        its term's usual norm.""")
     page.table("scene", "bytes", "anchors", "moving", "dead", "escapes", "ends: symbols", "steps",
                "contexts", "sigma", "widths", "clamped", "not finite", "loss", "largest gradient",
                "peak", "rollbacks", "training s of CPU")
@@ -115,9 +116,9 @@ def failure_section(lab):
     """The whole method's failures first, then the variants'. Counts those of the whole method."""
     page = lab.page
     page.heading("Failures and their causes")
-    page.prose("""Causes and what mends them are written by hand in
+    page.prose("""Causes and remedies are written by hand in
         [stability-notes.md](stability-notes.md).""")
-    page.table("scene", "variant", "what fails", "cause and mend")
+    page.table("scene", "variant", "what fails", "cause and remedy")
     for variant in lab.variants:
         for scene in lab.scenes:
             cell = lab.cell(scene, variant)
@@ -131,7 +132,7 @@ def failure_section(lab):
     for scene in lab.scenes:
         for i, variant in enumerate(lab.variants):
             if f"{scene} {variant}" in lab.unread or (i == 0 and f"{scene} *" in lab.unread):
-                page.prose(f"Of what no longer fails, on {scene}: {lab.note(scene, variant)}")
+                page.prose(f"No longer a failure, on {scene}: {lab.note(scene, variant)}")
 
 
 def seeds_section(lab, most):
@@ -142,7 +143,7 @@ def seeds_section(lab, most):
     page = lab.page
     page.heading("Seeds of easy scenes")
     page.prose("""These are the runs of bar 3, with the worst held-out picture and its camera.
-        *Loss* is the one at the last line of the log, as above.""")
+        *Loss* is that of the last line of the log, as above.""")
     page.table("scene", "seed", "PSNR", "worst (camera)", "bytes", "anchors", "moving", "Gaussians",
                "loss")
     for cell in easy:
@@ -161,7 +162,7 @@ def seeds_section(lab, most):
 def strip_section(lab):
     page = lab.page
     page.heading("Worst frames")
-    page.prose("""Each strip shows the truth, ours and the error (5 times) of the worst held-out
+    page.prose("""Each strip shows ground truth, rendering and error (5 times) of the worst held-out
         picture of the whole method's first seed.""")
     page.table("scene", "worst dB", "frame", "camera", "strip")
     for run in lab.runs.all:
@@ -178,12 +179,12 @@ def command_section(lab):
     page, runs = lab.page, lab.runs
     page.heading("Commands")
     page.prose("""`make stability` runs what is missing and writes this page; `bench/stability.sh
-        PATTERN...` runs parts, `bench/stability.sh --only TAG` one (for a cluster's job array), and
-        `python3 -m bench.pages stability` writes the page. Scenes `own:NAME+size=96x64` are made by
-        `ted4scene NAME --size 96x64 -o FOLDER`. † marks what older sources or other options made.
-        [stability.csv](stability.csv) has all columns.""")
+        PATTERN...` runs a part of it, `bench/stability.sh --only TAG` one run (for a cluster's job
+        array), and `python3 -m bench.pages stability` writes the page. Scenes
+        `own:NAME+size=96x64` are made by `ted4scene NAME --size 96x64 -o FOLDER`. † marks results
+        of older sources or other options. [stability.csv](stability.csv) has all columns.""")
     if runs.strangers:
-        page.prose(f"It holds {runs.strangers} rows that stability.txt does not want; they are not "
+        page.prose(f"It holds {runs.strangers} rows that stability.txt does not list; they are not "
                    "shown.")
     page.table("run", "command", "key")
     for run in runs.all:
