@@ -101,6 +101,6 @@ class Family:
     def holds(self):
         """How many verdicts hold by themselves, and how many among all, as a sentence."""
         alone = sum(seeded.is_worse_alone() != "?" for seeded in self.all)
-        tell = "tells" if alone == 1 else "tell"
-        return (f"Of {self.count} comparisons {alone} {tell} a difference when each is judged "
-                f"alone, and {len(self.holding)} when all are judged together.")
+        show = "shows" if alone == 1 else "show"
+        return (f"Of {self.count} comparisons {alone} {show} a significant difference if each is "
+                f"judged alone, and {len(self.holding)} if all are judged together.")

@@ -16,8 +16,8 @@ PARTS = {
 def section(report):
     page, runs = report.tables, report.runs
     page.heading("Bytes by syntax element")
-    page.prose("""The numbers are those of `ted4info FILE.ted4 --budget`. *frames*: what frames
-        chunks, tiles and the file.""")
+    page.prose("""The numbers are those of `ted4info FILE.ted4 --budget`. *Frames* are the bytes
+        that frame chunks, tiles and the file.""")
     page.table("run", "λ", "all", "header", "entropy networks", "networks", "bank", "positions",
                "masks", "feature", "scaling", "offset", "φ", "τ", "frames")
     for scene in report.scenes:

@@ -16,7 +16,7 @@ def section(report):
     page.heading("Rate estimated in training against the file")
     page.prose("""`estimated_bits` of `ted4enc --json` is the trainer's formula on rounded symbols
         of all anchors; it is compared with the bytes of the attributes' substreams in the file. The
-        table shows of each variant's runs the one with the largest difference.""")
+        table shows, for each variant, the run with the largest difference.""")
     page.table("variant", "runs", "estimated against file", "of run")
     dots, known, missing = Dots(report.styles, band=1), [], 0
     for variant in runs.variants:

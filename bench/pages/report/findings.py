@@ -97,11 +97,12 @@ def activation(report):
              if change.psnr is not None]
     if not there:
         return None
-    text = ("Without life spans of anchors PSNR at equal bytes changes by "
+    text = ("Without life spans, that is, with anchors that are always present, PSNR at equal "
+            "bytes changes by "
             + by_scene(there, lambda psnr: signed(psnr, 2, " dB")) + ".")
     recipe = seeded_on(report, "recipe_noactive")
     if recipe:
-        text += (f" Without them the paper's recipe alone is {compared_on(recipe)}"
+        text += (f" Without them, the paper's recipe alone is {compared_on(recipe)}"
                  f"{together(report, *recipe)}.")
     return text, (rows_of(report, "noactive", [scene for scene, _ in there])
                   + rows_over_seeds(recipe))
@@ -116,7 +117,7 @@ def deformation(report):
               if change.psnr is not None and scene not in known]
     chance = all(within_seeds(report.runs, *one) for one in single)
     text = ("In the paper's recipe alone, a network of place and time as wide as F_deform is "
-            f"{compared_on(recipe, ' than the bank of motions')}. Beside multi-view seeding, which "
+            f"{compared_on(recipe, ' than the bank of motions')}. With multi-view seeding, which "
             f"does much of the same work, it is {compared_on(seeded)}"
             f"{together(report, *seeded, *recipe)}.")
     if single:
@@ -134,7 +135,7 @@ def prior(report):
     if not by_default or not as_fixed:
         return None
     rates = [by_scene(known, lambda rate: f"{rate:.1f} %") for known in (as_fixed, by_default)]
-    return ("With a factorised prior in the place of the hyperprior, files take "
+    return ("With a factorised prior in place of the hyperprior, files take "
             f"{rates[0]} more bytes at equal PSNR (BD-rate) when the capacity is fixed, and "
             f"{rates[1]} when each chooses its capacity, as by default. The paper's figure is "
             "25 %.",
@@ -181,8 +182,8 @@ def spans(report):
     if not run.text("short_changed"):
         return None
     return (f"{100 * run.count('span_short'):.1f} % of the anchors of `kitchen` live for at most a "
-            "fifth of the sequence; they make "
-            f"{100 * run.count('short_changed'):.1f} % of the light where pixels change, "
+            "fifth of the sequence; they contribute "
+            f"{100 * run.count('short_changed'):.1f} % of the light where pixels change, and "
             f"{100 * run.count('short_same'):.1f} % elsewhere.", [run])
 
 
@@ -193,7 +194,7 @@ def estimated(report):
         return None
     worst = abs(estimate.worst_of(known)[0])
     variants = len({run.variant for _, run in known})
-    return (f"The rate that training estimates is the rate of the file to within {worst:.2f} % in "
+    return (f"The rate that training estimates matches that of the file to within {worst:.2f} % in "
             f"{variants} of {len(report.runs.variants)} variants.", [run for _, run in known])
 
 
@@ -203,9 +204,9 @@ def integers(report):
     if ideal is None:
         return None
     ms = {one: precision.median_ms(report.runs, SCENE, one) for one in ("integer", "float64")}
-    return (f"Entropy networks in integers, which decode alike on every machine, cost "
-            f"{100 * (run.count('bytes') / ideal - 1):.3f} % of the bytes of `{SCENE}`; a "
-            f"file of it decodes on one thread in {ms['integer']:.0f} ms, where float64 would take "
+    return (f"Integer entropy networks, which decode identically on every machine, cost "
+            f"{100 * (run.count('bytes') / ideal - 1):.3f} % of the bytes of `{SCENE}`; its "
+            f"file decodes on one thread in {ms['integer']:.0f} ms, where float64 would take "
             f"{ms['float64']:.0f} ms (medians of {precision.steps_of(report.runs, SCENE)}).",
             [one for _, one in precision.step_runs(report.runs, SCENE)])
 
@@ -267,8 +268,8 @@ def open_section(report, page):
     page.heading("What was promised and not met")
     page.prose(bars.summary("report-tables.md"))
     page.prose(ground(report))
-    page.prose("""[All bars](report-tables.md#bars). [Notes](#notes) tell what stands behind those
-        that are not met:""")
+    page.prose("""[All bars](report-tables.md#bars). The [notes](#notes) explain those that are not
+        met:""")
     page.say()
     for wanted in ("**missed**", "cannot be said", "not run yet"):
         for row in bars.rows:

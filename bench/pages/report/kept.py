@@ -28,7 +28,7 @@ def machine_of(lines):
 def section(report):
     page = report.tables
     page.heading("Speed and memory")
-    page.prose("""These numbers were measured apart, on the machine that each page names.""")
+    page.prose("""These numbers were measured separately, on the machine that each page names.""")
     page.table("page", "what", "result", "command")
     raster_row(report)
     render_row(report)
@@ -93,7 +93,7 @@ def render_row(report):
                     text and f"{text}; {machine_of(page_lines(report, 'render.md'))}",
                     min(speed[1] for speed in speeds) >= 30 if speeds else None,
                     "`make bench-render`: [render.md](render.md)")
-    report.tables.row("[render.md](render.md)", "drawing a decoded scene, everything new in each "
+    report.tables.row("[render.md](render.md)", "rendering a decoded scene, everything new in each "
                       "frame, 2 threads, medians", text or "not run yet", "`make bench-render`")
 
 

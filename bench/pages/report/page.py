@@ -39,15 +39,15 @@ def tables_text(report):
     head = Page()
     head.heading("All tables of the report", 1)
     head.prose("""`make report` writes this page from [sweep.csv](sweep.csv) and the pages that it
-        names; `make sweep` makes the rows. [report.md](report.md) tells what the tables show.""")
+        names; `make sweep` makes the rows. [report.md](report.md) says what the tables show.""")
     head.prose(report.runs.summary() + ".")
     head.heading("Bars")
-    head.prose("""The bars are those of the method, by number; "not run yet" stands wherever a run
-        is missing. A bar about a part of the method (1) is judged on every scene that has rows of
-        both sides, except where nothing moves: by BD-rate or PSNR at equal bytes, over seeds where
-        one seed cannot tell. It is met if it is met on each of these scenes, and if they are at
-        least two with more than one held-out camera together; it is missed if one of them misses
-        it.""")
+    head.prose("""The bars are those of the method, by number. "Not run yet" stands wherever a run
+        is missing, "cannot be said" where the rows neither meet nor miss a bar. A bar about a part
+        of the method (1) is judged by BD-rate or PSNR at equal bytes, over several seeds where one
+        cannot decide, on every scene in which something moves and that has rows of both sides. It
+        is met if all of these scenes meet it, and if they are at least two with more than one
+        held-out camera in all; it is missed if one of them misses it.""")
     head.prose(report.bars.summary())
     report.bars.show(head, "command, then `make report`")
     head.say()
@@ -63,14 +63,14 @@ def report_text(report):
     findings.section(report, page)
     findings.open_section(report, page)
     page.heading("Rate and distortion")
-    page.prose("""The whole method at four λ, measured on decoded files, on pictures that training
-        never saw ([tables](report-tables.md#rate-and-distortion),
+    page.prose("""The whole method at four λ, measured on held-out pictures rendered from decoded
+        files ([tables](report-tables.md#rate-and-distortion),
         [bytes by syntax element](report-tables.md#bytes-by-syntax-element)).""")
     rate.show(report, page)
     speed_section(report, page)
     picture_section(report, page)
     page.heading("What each part is worth")
-    page.prose("""Each variant is the whole method with one thing changed, trained by itself
+    page.prose("""Each variant is the whole method with one thing changed, trained separately
         ([tables](report-tables.md#one-thing-changed)).""")
     variants.show_overview(report, page)
     notes_section(report, page)
@@ -84,14 +84,16 @@ def headline(report, page):
         rows = [one for _, one in precision.step_runs(report.runs, run.scene)]
         ms = precision.median_ms(report.runs, run.scene, "integer")
         page.prose(f"""A file of {run.count('bytes') / 1000:.0f} kB shows the moving scene `kitchen`
-            to cameras that training never saw with {fixed(run.number('psnr'), 2)}
-            dB{mark([run])} (PSNR) and decodes on one thread in {fixed(ms, 0)} ms{mark(rows)}
+            to a camera that training never saw at {fixed(run.number('psnr'), 2)}
+            dB{mark([run])} (PSNR), and decodes on one thread in {fixed(ms, 0)} ms{mark(rows)}
             (median of {precision.steps_of(report.runs, run.scene)})."""
-            + (f" Two threads draw 100,000 moving Gaussians at 960x536 with {speeds[0][1]:.1f} "
+            + (f" Two threads render 100,000 moving Gaussians at 960x536 at {speeds[0][1]:.1f} "
                "frames/s ([render.md](render.md))." if speeds else ""))
-    page.prose("""`make report` writes this page from the rows of [sweep.csv](sweep.csv), which
-        `make sweep` makes; [report-tables.md](report-tables.md) holds all tables and the commands
-        behind them.""")
+    page.prose("""This report measures rate, quality, speed and the worth of each part of the method
+        on synthetic and real scenes, and says which [bars are
+        missed](#what-was-promised-and-not-met). `make report` writes it from the rows of
+        [sweep.csv](sweep.csv), which `make sweep` makes; [report-tables.md](report-tables.md) holds
+        all tables and the commands behind them.""")
     page.prose(report.runs.summary() + "." + older_profile(report.runs.all))
 
 
@@ -101,15 +103,15 @@ def older_profile(runs):
     if not mark(rows) or any((run.position_bits() == MAIN_BITS) != run.is_old() for run in rows):
         return ""
     return """ The files of rows marked † are of profile Main, and were trained with the presets of
-        earlier sources; the others are of profile Compact. No number is a difference between the
-        two kinds, and the commands behind marked rows make other files today."""
+        earlier sources; the others are of profile Compact. No number compares the two kinds, and
+        the commands behind marked rows make other files today."""
 
 
 def speed_section(report, page):
     page.heading("Speed against accuracy")
-    page.prose("""Every preset at its λ, with its own capacity (`--capacity fixed`). Core minutes
-        are those of all threads together. A picture takes decoding the whole file on one thread and
-        drawing it with the run's threads ([all columns and a
+    page.prose("""Every preset at its own λ and capacity (`--capacity fixed`). Core minutes are
+        those of all threads together. The last column is the time to decode the whole file on one
+        thread and to render one picture with the run's threads ([all columns and a
         chart](report-tables.md#speed-against-accuracy)).""")
     speed.show_training(report, page)
     page.table("run", "PSNR dB", "bytes", "core minutes", "decode + picture ms")
@@ -123,12 +125,12 @@ def speed_section(report, page):
 
 def picture_section(report, page):
     page.heading("Pictures")
-    page.prose("""Each sheet shows the truth, ours and the error (5 times) at three times, of
-        pictures that training never saw, drawn from the decoded file ([all
+    page.prose("""Each sheet shows ground truth, rendering and error (5 times) of held-out pictures
+        at three times; the rendering is from the decoded file ([all
         columns](report-tables.md#pictures)).""")
     if report.runs.find(SHOWN).has():
         page.say()
-        page.say(f"![Truth, ours and error of {SHOWN}](sheets/{SHOWN}.jpg)")
+        page.say(f"![Ground truth, rendering and error of {SHOWN}](sheets/{SHOWN}.jpg)")
     page.table("sheet", "changed", "PSNR dB", "SSIM", "bytes")
     pictures.sheet_rows(report.runs, page, "psnr:2 ssim:4 bytes")
 

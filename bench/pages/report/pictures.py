@@ -20,8 +20,8 @@ def sheet_rows(runs, page, columns):
 def sheet_section(report):
     page = report.tables
     page.heading("Pictures")
-    page.prose("""Each sheet shows the truth, ours and the error (5 times) at three times, of
-        pictures that training never saw, drawn from the decoded file.""")
+    page.prose("""Each sheet shows ground truth, rendering and error (5 times) of held-out pictures
+        at three times; the rendering is from the decoded file.""")
     page.table("sheet", "changed", "PSNR dB", "SSIM", "MS-SSIM", "bytes", "training s",
                "jobs x threads", "anchors", "moving", "decode ms")
     sheet_rows(report.runs, page, "psnr:2 ssim:4 ms_ssim:4 bytes train_s:0 team anchors dynamic "
@@ -37,14 +37,14 @@ def command_of(run):
 def command_section(report):
     page, runs = report.tables, report.runs
     page.heading("Commands")
-    page.prose("""`make sweep` runs what is missing, `bench/sweep.sh PATTERN...` parts of it, and
-        `make report` writes these pages. A run by hand is its command with `-o FILE.ted4`, then
-        `ted4eval FILE.ted4 SCENE --downscale N` (with its `--hold-out`), `ted4info FILE.ted4
-        --budget`, `bench/spans FILE.ted4`, `bench/rate_check FILE.ted4`. Scenes `own:NAME` are made
-        by `ted4scene NAME -o FOLDER`. † marks rows that older sources made, and numbers that depend
-        on one. [sweep.csv](sweep.csv) has all columns.""")
+    page.prose("""`make sweep` runs what is missing, `bench/sweep.sh PATTERN...` a part of it, and
+        `make report` writes these pages. To make a row by hand, run its command with `-o
+        FILE.ted4`, then `ted4eval FILE.ted4 SCENE --downscale N` (with its `--hold-out`), `ted4info
+        FILE.ted4 --budget`, `bench/spans FILE.ted4` and `bench/rate_check FILE.ted4`. Scenes
+        `own:NAME` are made by `ted4scene NAME -o FOLDER`. † marks rows that older sources made, and
+        numbers that depend on such a row. [sweep.csv](sweep.csv) has all columns.""")
     if runs.strangers:
-        page.prose(f"It holds {runs.strangers} rows that sweep.txt does not want; they are not "
+        page.prose(f"It holds {runs.strangers} rows that sweep.txt does not list; they are not "
                    "shown.")
     if runs.others:
         page.prose(f"It holds {runs.others} rows that other options than the wanted ones made; "

@@ -10,10 +10,11 @@ def section(report):
     if not wanted:
         return
     page.heading("Initial points as structure from motion gives them")
-    page.prose("""The initial points of made scenes lie on true surfaces, of moving things too, at
-        all times, with true colours. Scenes *_sfm* begin with a quarter as many (`ted4scene
-        --points sfm`): on what never moves only, less exact in depth, and with the tint of the
-        camera that sees them. *recipe*: see [one thing changed](#one-thing-changed).""")
+    page.prose("""The initial points of made scenes lie on true surfaces, of moving objects too, at
+        all times, and have true colours. Scenes *_sfm* begin with a quarter as many (`ted4scene
+        --points sfm`), which lie only on what never moves, are less exact in depth, and have the
+        tint of the camera that sees them. *recipe* is explained under [one thing
+        changed](#one-thing-changed).""")
     page.table("run", "PSNR dB", "bytes", "on surfaces", "PSNR dB", "bytes", "difference")
     for run in wanted:
         plain = runs.find(run.tag.replace("_sfm-", "-"))

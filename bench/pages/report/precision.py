@@ -52,13 +52,13 @@ def steps_of(runs, scene):
 def section(report):
     page, runs = report.tables, report.runs
     page.heading("Precision")
-    page.prose("""The steps Q0 of features, scalings and offsets are multiplied by a factor, and
-        each model is trained so. The entropy model is evaluated in integers, as coded, or in
-        floating point (`bench/rate_check FILE.ted4`): the table shows the bytes that the file would
-        have with networks of that precision and the same coder, and the time to decode it, which is
-        that of the file on one thread, less the integer networks, plus those. Pictures do not
-        depend on it. Floating-point networks would not decode alike on another machine: that is
-        what the integers are for.""")
+    page.prose("""The steps Q0 of features, scalings and offsets are multiplied by a factor, and a
+        model is trained for each factor. The entropy model is evaluated in integers, as coded, or
+        in floating point (`bench/rate_check FILE.ted4`). The table shows the bytes that the file
+        would have with networks of that precision and the same coder, and the time to decode it on
+        one thread, with the time of these networks in place of that of the integer ones. Pictures
+        do not depend on the precision. Floating-point networks would not decode identically on
+        another machine, which is why the coded ones are integers.""")
     page.table("run", "Q0 times", "PSNR dB", "bytes: integer", "float32", "float64",
                "decode ms: integer", "float32", "float64", "of it networks: integer", "float32",
                "float64")

@@ -8,11 +8,11 @@ DASHES = ("", "7 4", "2 4", "9 4 2 4")
 
 def section(report):
     page = report.tables
-    page.heading("A training as it goes")
+    page.heading("Training curves")
     page.prose("""The curves come from the logs that `ted4enc --log FILE` writes, thinned to about
-        100 lines each in `bench/logs`: loss; PSNR of the model in training on a few held-out
-        pictures; anchors; bytes as estimated (stage 2 only). Seconds are as they passed, without
-        what was lost by interruptions. The runs are those of the whole method at λ 0.002.""")
+        100 lines each in `bench/logs`: loss; PSNR on a few held-out pictures during training;
+        anchors; estimated bytes (stage 2 only). Seconds are of wall clock, without
+        what interruptions lost. The runs are those of the whole method at λ 0.002.""")
     logs = {scene: lines for scene in report.scenes if (lines := log_of(report, scene))}
     if logs:
         with report.charts.open("progress", 900, 672,

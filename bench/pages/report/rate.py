@@ -12,10 +12,10 @@ KB = "size of the file, kB (1000 bytes)"
 def section(report):
     page, runs = report.tables, report.runs
     page.heading("Rate and distortion")
-    page.prose("""The table shows the whole method at four λ, with one stage 1 for all of a scene.
-        It is measured on decoded files, on pictures that training never saw. Times are of one
-        thread and frames per second of the run's threads; both were taken beside the other jobs of
-        the sweep, and vary with them. *moving*: anchors with a temporal feature.""")
+    page.prose("""The table shows the whole method at four λ, which share stage 1 of each scene. It
+        is measured on held-out pictures rendered from decoded files. Decoding times are for one
+        thread, frame rates for the run's threads; both were taken while other jobs of the sweep
+        ran, and vary with them. *Moving* anchors are those with a temporal feature.""")
     for scene in report.scenes:
         page.heading(scene, 3)
         page.table("run", "λ", "PSNR dB", "SSIM", "SSIM_2", "MS-SSIM", "bytes", "anchors", "moving",

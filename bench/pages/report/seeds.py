@@ -26,8 +26,8 @@ def seeded_scenes(runs):
 def section(report):
     page, runs = report.tables, report.runs
     page.heading("Seeds")
-    page.prose("""The same command is run with seeds 1, 2, 3 and so on. The spread is the greatest
-        less the least of the first three.""")
+    page.prose("""The same command is run with seeds 1, 2, 3 and so on. The spread is the largest
+        minus the smallest value of the first three.""")
     page.table("scene", "run", "PSNR dB", "SSIM", "bytes", "anchors")
     scenes, texts = seeded_scenes(runs), []
     for scene, by_seed in scenes:
@@ -76,13 +76,13 @@ def seeded_section(report):
     page.prose("""Variants that differ from the whole method by no more than seeds do are trained
         with several seeds, each against the whole method at the same seed, λ 0.002. The table shows
         PSNR at equal bytes, along the curve of the whole method, and the mean with its standard
-        error. Negative numbers mean that the variant is worse. *Chance*: how often chance alone
-        makes a mean as far from zero, on either side (Student's t). *Alone*: the verdict when no
-        other comparison is made; *inconclusive* where that chance is above 5 %. *Together*: the
-        verdict when all comparisons of this table and the next are judged together, so that with a
-        chance of 5 % at most one of them or more is wrong (Holm's correction, either side). """
+        error. Negative numbers mean that the variant is worse. *p* is the two-sided p-value of
+        Student's t-test: how often chance alone makes a mean as far from zero. *Alone* is the
+        verdict if no other comparison is made, *inconclusive* where p is above 5 %. *Together* is
+        the verdict if all comparisons of this table and the next are judged together, so that the
+        chance that any of them is wrong is at most 5 % (Holm's correction, two-sided). """
                + report.family.holds())
-    page.table("scene", "variant", "by seed", "mean dB", "chance", "alone", "together")
+    page.table("scene", "variant", "by seed", "mean dB", "p", "alone", "together")
     for scene, variant in seeded_variants(runs, "seeded"):
         seeded = Seeded(runs, scene, variant)
         if seeded.changes:
@@ -104,12 +104,12 @@ def recipe_section(report):
     nothing that the paper does not have does its work."""
     page, runs = report.tables, report.runs
     page.heading("The paper's recipe alone", 3)
-    page.prose("""The same comparison without what the paper does not have: no multi-view seeding
-        (sprouts), transients or probe. Each seed is compared with the recipe at the same seed and
-        λ, as in the paper's table: PSNR, bytes; their means; and the mean of PSNR at equal bytes,
-        along the recipe's own curve of three λ, with its standard error.""")
-    page.table("scene", "changed", "by seed", "mean", "at equal bytes", "chance", "alone",
-               "together", "paper")
+    page.prose("""This is the same comparison without what the paper does not have: no multi-view
+        seeding (sprouts), transients or probe. Each seed is compared with the recipe at the same
+        seed and λ, as in the paper's table: in PSNR and bytes, with their means, and in the mean of
+        PSNR at equal bytes, along the recipe's own curve of three λ, with its standard error.""")
+    page.table("scene", "changed", "by seed", "mean", "at equal bytes", "p", "alone", "together",
+               "paper")
     for scene, variant in seeded_variants(runs, "recipe"):
         if variant != "recipe":
             recipe_row(report, scene, variant)

@@ -20,8 +20,8 @@ def medium_section(report):
     run = report.runs.find("kitchen_full-medium-1")
     page = report.tables
     page.heading("Medium preset, every pixel")
-    page.prose("""Times are of training steps, probe and checkpoints; they leave out looking at the
-        scene first, previews, and coding.""")
+    page.prose("""Times are of training steps, probe and checkpoints; they leave out the first look
+        at the scene, previews and coding.""")
     short_table(page, run)
     measured, ok = "", None
     if run.has():
@@ -41,7 +41,7 @@ def tint_section(report):
     page.heading("Cameras whose colours differ")
     page.prose("""`kitchen_tint` is `kitchen` with a colour bias per camera and the held-out camera
         untouched; both are at 240x135. Its pictures are JPEG and those of `kitchen` are not, so
-        that each scene would be judged by other pictures. *tint_by_kitchen* is therefore trained on
+        that the held-out pictures of the two differ. *tint_by_kitchen* is therefore trained on
         `kitchen` and judged, like the others, by the held-out pictures of `kitchen_tint`;
         *kitchen-fast-2* is the same training judged by those of `kitchen`.""")
     with_it, without, by_tint, plain = (report.runs.find(tag) for tag in (

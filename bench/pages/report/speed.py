@@ -24,13 +24,13 @@ def preset_runs(runs):
 def section(report):
     page, runs = report.tables, report.runs
     page.heading("Speed against accuracy")
-    page.prose("""The table shows every preset at its λ, with the capacity that it has (`--capacity
-        fixed`, as in all rows of the sweep; what choosing it takes and gives is in
-        [capacity.md](capacity.md)). Core seconds are those of all threads together, stage 1
-        included; they compare whatever ran beside. Seconds are as they passed. A picture takes
-        decoding the whole file on one thread and then drawing one picture with the run's threads,
-        beside the sweep's other jobs; what a quiet machine does is in [render.md](render.md) and
-        [decode.md](decode.md).""")
+    page.prose("""The table shows every preset at its own λ and capacity (`--capacity fixed`, as in
+        all rows of the sweep but *_auto*; [capacity.md](capacity.md) says what choosing it costs
+        and gains). Core seconds are those of all threads together, stage 1 included; they can be
+        compared whatever else ran. Seconds are of wall clock. The last column is the time to decode
+        the whole file on one thread and then to render one picture with the run's threads, while
+        the sweep's other jobs ran; [render.md](render.md) and [decode.md](decode.md) are of a quiet
+        machine.""")
     page.table("run", "preset", "core s", "of it stage 1", "s", "jobs x threads", "PSNR dB",
                "bytes", "decode ms", "frames/s", "decode + picture ms")
     wanted = preset_runs(runs)

@@ -43,25 +43,25 @@ def section(report):
 
 
 def explain(page, runs):
-    page.prose("""Each variant is trained by itself and measured on its own file. *Rate at equal
-        PSNR* and *PSNR at equal bytes* are against the curve of the whole method at four λ, by
-        interpolation on straight lines between its points, logarithm of bytes over PSNR; "-" stands
-        where that curve does not reach. *Nearest* is the point of the whole method that is nearest
-        in PSNR, with the differences to it. *BD-rate* is the mean change of rate over the PSNR that
-        both curves share; it is the rate by which bars, charts and texts compare. With four points
-        each it is Bjontegaard's, on cubics; with fewer it is marked "lines" and exact on straight
-        lines, with both curves through the same λ, because a straight line between far points lies
-        below a bent curve. Bold lines hold the BD-rate, and the means of the other differences over
-        the variant's runs. Positive rates and negative PSNR mean that the variant is worse. *Paper*
-        is its table of ablations: Neu3D at its highest rate, same λ. *Within seeds* means that the
-        difference in PSNR at equal bytes is less than the spread of three seeds of the whole method
-        on that scene.""")
-    page.prose("""*factorised_flat* is one Gaussian per component for all anchors, and *factorised*
-        is the same with the autoregression kept. *inr* has layers as wide as those of the whole
-        method's F_deform, *inr_paper* as many and as wide as the paper's. *hardmask* pushes the
-        temporal mask ten times as hard, *moremask* gives the offset mask more weight than the
-        default has. *recipe* leaves out what the paper does not have: multi-view seeding (sprouts),
-        seeded transients and the probe.
+    page.prose("""Each variant is trained separately and measured on its own file. *Rate at equal
+        PSNR* and *PSNR at equal bytes* compare it with the curve of the whole method at four λ,
+        which is interpolated linearly, logarithm of bytes over PSNR; "-" stands where that curve
+        does not reach. *Nearest* is the point of the whole method that is nearest in PSNR, with the
+        differences from it. *BD-rate* is the mean change of rate over the PSNR that both curves
+        share; bars, charts and texts compare rates by it. With four points on each curve it is
+        Bjontegaard's, on cubics; with fewer it is marked "lines" and computed exactly on straight
+        lines. Both curves go through the same λ, because a straight line between distant points
+        lies below a bent curve. Bold rows hold the BD-rate, and the means of the other differences
+        over the variant's runs. Positive rates and negative PSNR mean that the variant is worse.
+        *Paper* is the paper's table of ablations: Neu3D at its highest rate, same λ. *Within seeds*
+        means that PSNR at equal bytes differs by less than the spread of three seeds of the whole
+        method on that scene.""")
+    page.prose("""*factorised_flat* has one Gaussian per component for all anchors; *factorised*
+        also keeps the autoregression. *inr* has layers as wide as those of the whole
+        method's F_deform, *inr_paper* as many and as wide as the paper's. *hardmask* gives the
+        temporal mask ten times its weight, and *moremask* gives the offset mask more weight than
+        the default. *recipe* leaves out what the paper does not have: multi-view seeding (sprouts),
+        short-lived initial points (transients) and the static-scene test (probe).
         Only the rows *_auto* choose their capacity; they are compared with the whole method with
         that choice, *whole_auto*, and the rows *factorised_..._moremask* with *moremask*.
         *factorised_long* and *whole_long* have the steps of preset fast"""
