@@ -19,14 +19,14 @@ THINGS = {"things0": "0", "things1": "1", "things2": "2", "things4": "4", "thing
 TIMES = {"things4": "16", "long2": "32", "long4": "64"}
 FINE_BITS = 16      # of a weight: coarse grids have fewer, full precision more
 SETTINGS = {
-    "auto": "no more of *whole* than pays, as trials in stage 2 decide",
+    "auto": "as much of *whole* as pays, which trials in stage 2 decide",
     "whole": "the sizes of the preset, fixed",
     "lean": "as *whole*, with a small entropy model",
-    "less": "as *lean*, with three quarters of the Gaussians an anchor, of the feature and of "
+    "less": "as *lean*, with three quarters of the Gaussians per anchor, of the feature and of "
             "the heads' width, and half of the width of F_deform and of the bank",
-    "small": "as *lean*, with half of the Gaussians an anchor, of the feature, the temporal "
+    "small": "as *lean*, with half of the Gaussians per anchor, of the feature, the temporal "
              "feature and the heads' width, a quarter of the width of F_deform and of the bank, "
-             "and a still smaller entropy model",
+             "and an even smaller entropy model",
     "static": "as *lean*, without time",
 }
 
@@ -45,8 +45,11 @@ def write(runs, charts, results, _):
     capacity_misses.section(body, costs, missed_scenes(runs, costs), notes)
     head = Page()
     head.heading("Capacity: no more model than a scene needs", 1)
-    head.prose("""`make capacity` writes this page from [capacity.csv](capacity.csv); the runs are
-        those of capacity.txt. † marks rows that other sources made.""")
+    head.prose("""With `--capacity auto` (*auto*), training makes the model smaller as long as that
+        lowers the rate-distortion cost of the file. This page compares the result with fixed
+        settings, scene by scene, and says [where it misses](#what-misses). `make capacity` writes
+        it from [capacity.csv](capacity.csv); the runs are those of capacity.txt. † marks rows that
+        other sources made.""")
     head.prose(runs.summary() + ".")
     head.prose(bars.summary())
     bars.show(head, "command, then `python3 -m bench.pages capacity`")
@@ -173,8 +176,8 @@ def things_bar(bars, costs):
     ok = False if known and not grows else True if len(known) == len(means) else None
     autos = [run for scene in THINGS for run in costs.runs.present(scene, "auto")]
     ok, measured = of_one_encoder(ok, ", ".join(f"{value:.0f}" for value in known), autos)
-    bars.add(6, "bytes for time with 0, 1, 2, 4, 8 moving things, mean over seeds",
-             "0 first, then more and more", measured, ok,
+    bars.add(6, "bytes for time with 0, 1, 2, 4, 8 moving objects, mean over seeds",
+             "0 first, then rising", measured, ok,
              command("'things*-auto-*'"), first_things(costs.runs) if ok is not None else None)
 
 
@@ -252,7 +255,7 @@ def content(runs, page, costs, title, scenes):
     fine = fine_scenes(runs, scenes)
     if fine:
         page.prose(f"""The files *whole* of {', '.join(fine)} hold weights at full precision (see
-            *bits a weight* above).""")
+            *bits per weight* above).""")
 
 
 def fine_scenes(runs, scenes):
@@ -275,26 +278,28 @@ def sections(runs, page, costs, charts):
     page.heading("Auto against fixed settings")
     show_settings(runs, page)
     page.prose("""The cost is 0.8 L1 + 0.2 (1 - SSIM) of held-out pictures, plus λ times the bits of
-        the file over the values of all anchors of the scene's `whole` run, so that a bit weighs the
-        same in every run of a scene. *For time* are the bytes of the bank, of temporal features and
-        of activations, and the networks' share. *CPU s* are seconds of training, trials included;
-        *trials* are the steps of trained ones. *Bits a weight* are those of the networks of
-        reconstruction and of the bank in the file. *Model* shows K/F/d, rows x width of the bank,
-        widths of F_deform/heads, hyperprior/slices, view.""")
+        the file divided by the number of values of all anchors in the scene's `whole` run, so that
+        a bit weighs the same in every run of a scene. *For time* counts the bytes of the bank, of
+        temporal features and of activations, and the networks' share. *CPU s* are seconds of
+        training, trials included; *trials* are the steps of those trials that train. *Bits per
+        weight* are those of the networks of reconstruction and of the bank in the file. *Model*
+        shows K/F/d, rows x width of the bank, widths of F_deform/heads, hyperprior/slices, view.
+        Scenes *things0* to *things8* have that many moving objects; *long2* and *long4* are
+        *things4* for twice and four times as long, and *rest* is *things4* and as long a rest.""")
     fine = fine_scenes(runs, runs.scenes)
     if fine:
-        page.prose(f"""How many bits weights are worth is among what auto decides. Fixed settings
-            decide it, too, but only where the trials that this takes fit into their budget, which
-            grows with the steps, while the time of a trial grows with the frames of the scene. On
-            {', '.join(fine)} they did not fit: files of fixed settings hold weights at full
-            precision there, and are larger for that reason as well. How much of auto's advantage on
-            these scenes is due to it was not measured.""")
+        page.prose(f"""Auto also decides how many bits weights get. So do fixed settings, but only
+            where the trials that this takes fit into their budget, which grows with the steps,
+            while the time of a trial grows with the frames of the scene. On {', '.join(fine)} they
+            did not fit: files of fixed settings hold weights at full precision there, and are
+            larger for that reason, too. How much of auto's advantage on these scenes is due to it
+            was not measured.""")
     page.table("scene", "setting", "bytes", "PSNR", "cost", "against the best fixed", "for time",
-               "CPU s", "trials", "decode ms", "bits a weight", "model")
+               "CPU s", "trials", "decode ms", "bits per weight", "model")
     for scene in runs.scenes:
         show_scene(runs, page, costs, scene)
-    content(runs, page, costs, "How many things move", list(THINGS))
-    content_chart(charts, page, costs, "things", "Size by what moves", "things that move, of eight",
-                  THINGS)
-    content(runs, page, costs, "For how long", list(TIMES) + ["rest"])
-    content_chart(charts, page, costs, "times", "Size by how long it moves", "times", TIMES)
+    content(runs, page, costs, "Number of moving objects", list(THINGS))
+    content_chart(charts, page, costs, "things", "Size by number of moving objects",
+                  "moving objects, of eight", THINGS)
+    content(runs, page, costs, "Length of the sequence", list(TIMES) + ["rest"])
+    content_chart(charts, page, costs, "times", "Size by length of the sequence", "times", TIMES)

@@ -20,8 +20,9 @@ def section(page, costs, missed, notes):
     page.heading("What misses")
     attempts = [name for name in notes if name.startswith(ATTEMPT)]
     if missed:
-        page.prose("""These scenes miss bar 4: by how much auto costs more than the best fixed
-            setting, and what the [table](#auto-against-fixed-settings) shows of the cause.""")
+        page.prose("""These scenes miss bar 4. For each, the list says by how much auto costs more
+            than the best fixed setting, and what the [table](#auto-against-fixed-settings) shows of
+            the cause.""")
         page.say()
     else:
         page.prose("No scene that has all its rows misses bar 4.")
