@@ -10,12 +10,12 @@ MOST_BITS = 20         # of a position, an anchor
 RATE_ERROR = 1         # percent, estimate against the file
 COMMAND = "`bench/bd_rate.sh`"
 # What stands under the bars.
-ATTEMPTS = """Both sides are trained by the same encoder, so that bar 1 shows the profile and the
-    longer stage 2 alone. Attempts to save more: masks that weigh all that a Gaussian costs
-    (variant "masks"), coarser spans (-0.7 %), and contexts of neighbours in two designs, which
-    would gain 0.5 to 1.4 % of a file, all types of values together
-    ([compact.md](compact.md#what-it-says)). What limits it: the symbols of anchors are most of a
-    file, and the hyperprior of profile Main already codes them nearly as well as their neighbours
+ATTEMPTS = """The same encoder trains both sides, so that bar 1 shows the effect of the profile and
+    of the longer stage 2 alone. Attempts to save more that were left out: masks that weigh all that
+    a Gaussian costs (variant "masks"), coarser spans (-0.7 %), and contexts of neighbours in two
+    designs, which would gain 0.5 to 1.4 % of a file, all types of values together
+    ([compact.md](compact.md#summary)). What limits the savings: the symbols of anchors are most of
+    a file, and the hyperprior of profile Main already codes them nearly as well as their neighbours
     allow. Against files of the encoder before profile Compact, the savings were 26.6 to 34.2 % on
     the four scenes (rows of commit 680519c9)."""
 
@@ -28,17 +28,17 @@ def write(runs, _charts, _results, _pages):
     estimate_bar(runs, bars)
     page = Page()
     page.heading("Profile Compact: rate and quality", 1)
-    page.prose("""`make bd-rate` writes this page from [bd_rate.csv](bd_rate.csv); the runs are
-        those of bd_rate.txt, in small trainings. "before" is profile Main; "compact" is profile
-        Compact with three times the steps in stage 2; "masks" is the same with `mask_weight=1`
-        instead of 0.4, the default, which the others have; "seed2" and "seed3" are other seeds of
-        both. PSNR is that of held-out pictures, drawn from the decoded file. BD-rate is the mean
-        difference of bytes at equal PSNR, between curves through the four rates
-        ([how](report-tables.md#one-thing-changed)). *Estimate* is by how much the bits that
-        training estimates differ from those of the attributes' substreams in the file. Times of
-        decoding are no comparison: other work ran beside them. † marks rows that other sources
-        made. What each technique gains, and times of decoding side by side:
-        [compact.md](compact.md).""")
+    page.prose("""This page compares files of profile Compact with files of profile Main, at four
+        rates in small trainings. `make bd-rate` writes it from [bd_rate.csv](bd_rate.csv); the runs
+        are those of bd_rate.txt. "before" is profile Main; "compact" is profile Compact with three
+        times the steps in stage 2; "masks" is "compact" with `mask_weight=1` instead of the
+        default, 0.4; "seed2" and "seed3" are other seeds. PSNR is that of held-out pictures,
+        rendered from the decoded file. BD-rate is the mean difference of bytes at equal PSNR,
+        between curves through the four rates ([how](report-tables.md#one-thing-changed)).
+        *Estimate* is by how much the bits that training estimates differ from those of the
+        attributes' substreams in the file. Decoding times cannot be compared, because other work
+        ran beside them; [compact.md](compact.md) has times measured side by side, and what each
+        technique gains. † marks rows that other sources made.""")
     page.prose(f"{sum(run.has() for run in runs.all)} of {len(runs.all)} rows are there"
                + made_with(runs.all) + ".")
     page.prose(bars.summary())
@@ -90,8 +90,8 @@ def rate_bar(runs, bars):
         if None not in rates:
             known[scene] = rates
     missed = [scene for scene, rates in known.items() if sum(rates) > LEAST_GAIN * len(rates)]
-    bars.add(1, "BD-rate against profile Main as before, by the same encoder, four rates",
-             f"{LEAST_GAIN} % at least on each scene",
+    bars.add(1, "BD-rate against profile Main, by the same encoder, four rates",
+             f"{LEAST_GAIN} % or better on each scene",
              ", ".join(f"{scene} {rate_words(rates)}" for scene, rates in known.items())
              + mark(runs.all),
              verdict(missed, len(known), len(runs.scenes)), COMMAND)
@@ -101,7 +101,7 @@ def position_bar(runs, bars):
     compact = [run for run in runs.all if run.variant.startswith("compact")]
     known = known_of(compact, Measured.position_bits)
     most = max(known, key=known.get, default=None)
-    bars.add(2, "positions", f"at most {MOST_BITS} bits an anchor",
+    bars.add(2, "positions", f"at most {MOST_BITS} bits per anchor",
              "" if most is None else f"{fixed(min(known.values()), 1)} to "
              f"{fixed(known[most], 1)} bits, most: {most}{mark(compact)}",
              verdict(any(bits > MOST_BITS for bits in known.values()), len(known), len(compact)),
@@ -141,7 +141,7 @@ def rate_table(runs, page):
 
 def run_table(runs, page):
     page.heading("Runs")
-    page.table("run", "λ", "bytes", "PSNR, dB", "anchors", "position, bits an anchor",
+    page.table("run", "λ", "bytes", "PSNR, dB", "anchors", "position, bits per anchor",
                "estimate", "decoding, ms", "training, CPU s")
     for run in runs.all:
         if not run.has():
