@@ -47,9 +47,9 @@ def write(runs, charts, results, _):
     head.heading("Capacity: no more model than a scene needs", 1)
     head.prose("""With `--capacity auto` (*auto*), training makes the model smaller as long as that
         lowers the rate-distortion cost of the file. This page compares the result with fixed
-        settings, scene by scene, and says [where it misses](#what-misses). `make capacity` writes
-        it from [capacity.csv](capacity.csv); the runs are those of capacity.txt. † marks rows that
-        other sources made.""")
+        settings, scene by scene, and says [where it misses](#scenes-that-miss-bar-4). `make
+        capacity` writes it from [capacity.csv](capacity.csv); the runs are those of capacity.txt.
+        † marks rows that other sources made.""")
     head.prose(runs.summary() + ".")
     head.prose(bars.summary())
     bars.show(head, "command, then `python3 -m bench.pages capacity`")

@@ -17,7 +17,7 @@ def over_words(costs, scene):
 
 def section(page, costs, missed, notes):
     """missed: scenes. notes: those of a scene under its name; "search"; attempts."""
-    page.heading("What misses")
+    page.heading("Scenes that miss bar 4")
     attempts = [name for name in notes if name.startswith(ATTEMPT)]
     if missed:
         page.prose("""These scenes miss bar 4. For each, the list says by how much auto costs more

@@ -113,13 +113,14 @@ def write(runs, _charts, _results, _pages):
     page = Page()
     page.heading("The zoo: scenes as other people write them", 1)
     sources = made_with([case.run for case in zoo.cases])
-    page.prose(f"""`make zoo` writes this page from [zoo.csv](zoo.csv): {len(zoo.there)} of
-        {len(zoo.cases)} wanted runs are there{sources}. Each case shows the content of its
-        reference scene in a way in which others write scenes. Reference scenes have nothing
-        unusual: several cameras at each time, points on surfaces, opaque PNG. [zoo.txt](zoo.txt)
-        is the table. The command makes the scene; then `ted4enc SCENE -o FILE.ted4 --preset draft
-        --seed 1` trains it, with the options that stand behind the command. The preset is draft,
-        because the default takes several times as long.""")
+    page.prose(f"""The zoo tests scenes that are written as other people write them. Each case has
+        the content of a reference scene, and should come out as well. Reference scenes have nothing
+        unusual: several cameras at each time, points on surfaces, opaque PNG. `make zoo` writes
+        this page from [zoo.csv](zoo.csv): {len(zoo.there)} of {len(zoo.cases)} wanted runs are
+        there{sources}. The cases are listed in [zoo.txt](zoo.txt). The command makes the scene;
+        then `ted4enc SCENE -o FILE.ted4 --preset draft --seed 1` trains it, with the options that
+        stand behind the command. The preset is draft, because the default takes several times as
+        long.""")
     bars = Bars()
     case_bars(zoo, bars)
     back_bar(bars, zoo.lab, "the same on the scenes of the stability lab",
@@ -131,7 +132,7 @@ def write(runs, _charts, _results, _pages):
     show_cases(zoo, page)
     show_back(page, zoo.long, "Long trainings", "These are trainings with the default preset.")
     show_back(page, zoo.lab, "The stability lab", """These are the scenes of
-        [stability.md](stability.md), at one seed and with its options. They are here for the
+        [stability.md](stability.md), at one seed and with its options. They test the divergence
         monitor alone.""")
     show_alone(zoo, page)
     show_misses(zoo, page)
@@ -152,19 +153,19 @@ def case_bars(zoo, bars):
     turns = [case for case in there if case.takes_turns()]
     shown = [case.is_shown() for case in turns]
     ok = zoo.so_far(False in shown)
-    bars.add(2, "cameras that take turns: what moves, in training pictures",
+    bars.add(2, "cameras that take turns: moving objects in training pictures",
              f"at least {LEAST_MOVING} dB",
              f"{shown.count(True)} of {len(turns)}{mark([case.run for case in turns])}",
              "?" if ok and None in shown else ok, "`bench/zoo.sh 'turns*'`")
     back = sum(case.run.count("rollbacks") for case in there)
-    bars.add(3, "the monitor goes back to a checkpoint", "never", f"{back:.0f} times{marks}",
+    bars.add(3, "the divergence monitor rolls training back", "never", f"{back:.0f} times{marks}",
              zoo.so_far(back), "`bench/zoo.sh`")
 
 
 def back_bar(bars, runs, what, how):
     there = [run for run in runs if run.has()]
     back = sum(run.count("rollbacks") + (run.text("status") != "fine") for run in there)
-    bars.add(3, what + ", and that they end well", "never",
+    bars.add(3, what + ", or a training fails", "never",
              f"{len(there)} trainings, {back:.0f} times{mark(there)}",
              False if back else None if len(there) < len(runs) else True, how)
 
@@ -180,11 +181,12 @@ def predicted_bars(zoo, bars):
                  f"at worst {text(max(known))}, {len(known)} runs{mark(there)}" if known else "",
                  False if known and max(known) > most else ok, how)
 
-    add("estimate of the whole time, from a tenth of it on; alone on the machine", "within 25 %",
+    add("predicted training time, from a tenth of it on; alone on the machine", "within 25 %",
         lambda one: one.time, MOST_TIME, lambda worst: percent(worst, 1))
-    add("`psnr` of the last line", "within 0.5 dB", lambda one: one.psnr, MOST_PSNR, decibels)
-    add("`bytes` of the last line", "within 5 %", lambda one: one.bytes, MOST_BYTES,
-        lambda worst: percent(worst, 2))
+    add("`psnr` of the last line against the file", "within 0.5 dB", lambda one: one.psnr,
+        MOST_PSNR, decibels)
+    add("`bytes` of the last line against the file", "within 5 %", lambda one: one.bytes,
+        MOST_BYTES, lambda worst: percent(worst, 2))
 
 
 def decibels(number):
@@ -193,12 +195,13 @@ def decibels(number):
 
 def show_cases(zoo, page):
     page.heading("Every case")
-    page.prose("""PSNR is in dB: of held-out pictures, the same against the reference scene's, of
-        training pictures, and of these inside the masks of what moves and of its shadow, over all
-        pixels. Seconds are of one core; warnings are those of ted4enc; *back* is how often the
-        monitor went back to a checkpoint.""")
+    page.prose("""PSNR is in dB: of held-out pictures, its difference from the reference scene's, of
+        training pictures, and of *moving objects* in these, over all pixels inside the masks of the
+        objects and their shadows. Seconds are of one core; warnings are those of ted4enc;
+        *rollbacks* are those of the divergence monitor.""")
     page.table("case", "command", "reference", "held out", "against reference", "training",
-               "what moves", "bytes", "anchors", "steps", "seconds", "warnings", "back", "verdict")
+               "moving objects", "bytes", "anchors", "steps", "seconds", "warnings", "rollbacks",
+               "verdict")
     for case in zoo.cases:
         if not case.run.has():
             page.row_missing(case.scene, case.commands(), case.reference)
@@ -215,7 +218,8 @@ def show_back(page, runs, title, text):
         return
     page.heading(title)
     page.prose(text)
-    page.table("case", "held out", "training", "what moves", "bytes", "steps", "seconds", "back")
+    page.table("case", "held out", "training", "moving objects", "bytes", "steps", "seconds",
+               "rollbacks")
     for run in runs:
         if run.has():
             page.row(run.scene + mark([run]), *cells(
@@ -227,11 +231,10 @@ def show_back(page, runs, title, text):
 def show_alone(zoo, page):
     if not zoo.alone:
         return
-    page.heading("What is predicted")
-    page.prose("""The table shows the largest difference between the time that `ted4enc` says and
-        the time that the whole training takes, from a tenth of it on, in hundredths; and the
-        differences between the last line's `psnr` and `bytes` and those of the file. Each run has
-        the machine for itself.""")
+    page.heading("Predicted time, PSNR and bytes")
+    page.prose("""The table shows the largest error of the training time that `ted4enc` predicts,
+        from a tenth of the training on, and the differences between `psnr` and `bytes` of its last
+        line and those of the file. Each run has the machine to itself.""")
     page.table("case", "seconds", "time", "psnr", "bytes")
     for run in zoo.alone:
         if not run.has():
@@ -243,10 +246,10 @@ def show_alone(zoo, page):
 
 
 def show_misses(zoo, page):
-    page.heading("What misses")
+    page.heading("Cases that miss a bar")
     missed = [case for case in zoo.there if case.missed()]
     if not missed:
-        page.prose("Nothing." if zoo.there else "Not run yet.")
+        page.prose("None." if zoo.there else "Not run yet.")
         return
     page.say()
     for case in missed:
