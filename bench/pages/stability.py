@@ -150,7 +150,7 @@ def thrown_bar(lab):
     ok, measured = of_one_encoder(
         ok, ", ".join(f"{scene} {a:.1f} against {b:.1f}" for scene, (a, b) in out.items()),
         [run for pair in pairs for cell in pair for run in cell.wanted])
-    lab.bars.add(2, "anchors thrown out of view where things come, go or hide, means over seeds",
+    lab.bars.add(2, "anchors thrown out of view where objects come, go or hide, means over seeds",
                  "fewer than without activation, and in no scene more", measured, ok,
                  command("'*-whole-*' '*-noactive-*'"), first_thrown(lab))
 

@@ -269,7 +269,7 @@ def open_section(report, page):
     page.prose(bars.summary("report-tables.md"))
     page.prose(ground(report))
     page.prose("""[All bars](report-tables.md#bars). The [notes](#notes) explain those that are not
-        met:""")
+        met. "Cannot be said" stands for those that were measured, but neither met nor missed:""")
     page.say()
     for wanted in ("**missed**", "cannot be said", "not run yet"):
         for row in bars.rows:

@@ -101,8 +101,8 @@ def bar(report):
                 f"slow (dog): {shares_text(slow)}")
         ok, text = of_one_encoder(ok, text, [fast, slow])
     report.bars.add(6, "activation spans up to 0.2 / between / 0.8 and more, and heat maps",
-                    "short spans where things come and go (light by short lives at least ten times "
-                    "that elsewhere); more of them in the fast scene", text, ok,
+                    "short spans where objects come and go (light by short lives at least ten "
+                    "times that elsewhere); more of them in the fast scene", text, ok,
                     sweep(f"{FAST} {SLOW}"), first_bar(report))
 
 

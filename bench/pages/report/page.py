@@ -58,7 +58,7 @@ def tables_text(report):
 
 def report_text(report):
     page = Page()
-    page.heading("What the method shows", 1)
+    page.heading("Evaluation of the method", 1)
     headline(report, page)
     findings.section(report, page)
     findings.open_section(report, page)
@@ -83,8 +83,8 @@ def headline(report, page):
         speeds = kept.render_speeds(report)
         rows = [one for _, one in precision.step_runs(report.runs, run.scene)]
         ms = precision.median_ms(report.runs, run.scene, "integer")
-        page.prose(f"""A file of {run.count('bytes') / 1000:.0f} kB shows the moving scene `kitchen`
-            to a camera that training never saw at {fixed(run.number('psnr'), 2)}
+        page.prose(f"""A file of {run.count('bytes') / 1000:.0f} kB reproduces the moving scene
+            `kitchen`, as a held-out camera sees it, at {fixed(run.number('psnr'), 2)}
             dB{mark([run])} (PSNR), and decodes on one thread in {fixed(ms, 0)} ms{mark(rows)}
             (median of {precision.steps_of(report.runs, run.scene)})."""
             + (f" Two threads render 100,000 moving Gaussians at 960x536 at {speeds[0][1]:.1f} "

@@ -48,7 +48,7 @@ def bar(report):
     ok = False if False in known else True if known and None not in known else None
     rows = [run for scene in report.scenes for run in report.runs.of(scene, "whole")]
     report.bars.add(1, "PSNR over bytes at four λ: " + ", ".join(report.scenes),
-                    "PSNR and bytes fall with every λ",
+                    "PSNR and bytes fall with every step of λ",
                     ", ".join(f"{scene}: {words[fall]}" for scene, fall in falls.items())
                     + mark(rows), ok, sweep("rd"))
 
