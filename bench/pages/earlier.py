@@ -1,5 +1,5 @@
-"""What rows that are gone measured: bench/earlier.csv, for definitions of bars that today's rows
-cannot judge.
+"""Results of rows that no longer exist: bench/earlier.csv, for definitions of bars that today's
+rows cannot judge.
 SPDX-License-Identifier: BSD-2-Clause"""
 import csv
 
