@@ -63,12 +63,11 @@ page. The scene has $frames frames ($distinct distinct ones) of
 $cameras cameras at ${width}x$height, in all $gigabytes GB of pixels. It is trained by
 \`ted4enc SCENE -o FILE -j $threads --seed 1\` with
 \`$forced\`
-and the options of the row, under \`ulimit -v $limit_kib\` (8 GB of address space): with more, it
-would have failed. Growth is forced. Anchors are those of the file; those that no picture would miss
-were removed before stage 2. So short a training runs no trials of smaller models, which keep up to
-five copies of all anchors, 55 MB each at 40,000. Peak is the largest resident memory of the
-process, from the scene's first picture to the checked file (\`peak_mib\` of \`--json\`, from
-getrusage).
+and the options of the row, under \`ulimit -v $limit_kib\` (8 GB of address space): more would have
+failed. Growth is forced. Anchors are those of the file; those that no picture would miss were
+removed before stage 2. So short a training runs no trials of smaller models, which keep up to five
+copies of all anchors, 55 MB each at 40,000. Peak is the largest resident memory, from the first
+picture read to the checked file (\`peak_mib\` of \`--json\`, from getrusage).
 END
     echo
     echo "| run | options | anchors | Gaussians in the file | peak MiB |"
