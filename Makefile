@@ -147,6 +147,7 @@ $B/tests/tools/test_look: $(ENC_TOOL:%.c=$B/%.o)
 $B/tests/tools/test_output: override LDFLAGS += -Wl,--wrap=fsync
 $B/tests/tools/test_kernels $B/tests/tools/test_outputs: | $B/ted4conf $B/ted4tolerance
 $B/tests/tools/test_stop: $B/ref-encoder/tool/stop.o
+$B/tests/tools/test_thumbnail: $B/ref-encoder/tool/describe.o
 $B/tests/tools/test_verify: $B/ref-encoder/tool/verify.o
 $(addprefix $B/tests/encoder/test_starved_,trainer writer): override LDFLAGS += \
         -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=aligned_alloc

@@ -2,5 +2,10 @@
 import type { GraphicsDevice } from "playcanvas";
 
 /** To be called once for a device of an application with a GSplatComponentSystem, before anything
- *  is drawn. Only for WebGL. Throws Error if this PlayCanvas has other shaders. */
+ *  is drawn. Only for WebGL. scene.gsplat.antiAlias has to be true where pixels are wider than those
+ *  of training. Throws Error if this PlayCanvas has other shaders. */
 export function drawAsAnnexI(device: GraphicsDevice): void;
+
+/** The width of a pixel from the next frame on, in pixels of the pictures of which the scene was
+ *  learnt (annex I.4; pixelWidth of pixel.js): above 0, and 1 before the first call. */
+export function setPixel(device: GraphicsDevice, pixel: number): void;

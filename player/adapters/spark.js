@@ -1,8 +1,15 @@
 // spark.js - the Gaussians of a time as PackedSplats of Spark: 16 bytes each, with centres in
 // binary16 and the rest in 8 bits. The axes of the world stay right, down, forward; turn the mesh
-// if y is up. Draw with preBlurAmount 0.3, blurAmount 0 and sortRadial false (annex I).
+// if y is up.
 // SPDX-License-Identifier: BSD-2-Clause
 import { PackedSplats, setPackedSplat } from "@sparkjsdev/spark";
+import { widening } from "./pixel.js";
+
+// Options of a SparkRenderer that draws as annex I does; pixel: the width of a pixel (pixel.js).
+export function annexI(pixel = 1) {
+  const { learnt, square } = widening(pixel);
+  return { preBlurAmount: learnt, blurAmount: square, sortRadial: false, minAlpha: 1 / 255 };
+}
 
 // For n Gaussians: the splats of a SplatMesh, { packedSplats }.
 export function createPackedSplats(n) {

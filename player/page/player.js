@@ -1,6 +1,7 @@
 // player.js - a file on the screen: decodes and evaluates in workers, and keeps the picture at the
 // time and the camera that are wanted now. It knows nothing of the page around its canvas.
 // SPDX-License-Identifier: BSD-2-Clause
+import { pixelWidth } from "../adapters/pixel.js";
 import { timeOfFragment } from "../src/times.js";
 import { centreOf, fitted } from "./camera.js";
 import { bytesByType, camerasOf, chunksOf, metaOf } from "./chunks.js";
@@ -198,7 +199,9 @@ export class Player {
     if (before?.camera === camera && before.width === width && before.height === height) return;
     if (before?.width !== width || before.height !== height) this.#view.resize(width, height);
     this.#pose = { camera, width, height };
-    this.#view.setCamera(fitted(camera, width, height), NEAREST * 2 ** this.file.info.exponent);
+    const shown = fitted(camera, width, height), { cameras } = this.file.cameras;
+    this.#view.setCamera(shown, NEAREST * 2 ** this.file.info.exponent,
+      pixelWidth(shown.fx, cameras));
   }
 
   // What the Gaussians depend on: the time, and the camera's place if colours depend on it.

@@ -5,7 +5,7 @@ import {
   Entity, FILLMODE_NONE, GSplatComponentSystem, GSPLATDATA_LARGE, Mat4, Quat, RESOLUTION_FIXED,
   TONEMAP_NONE, WORKBUFFER_UPDATE_ONCE,
 } from "playcanvas";
-import { drawAsAnnexI } from "../adapters/playcanvas-kernel.js";
+import { drawAsAnnexI, setPixel } from "../adapters/playcanvas-kernel.js";
 import { createContainer, updateContainer } from "../adapters/playcanvas.js";
 import { centreOf } from "./camera.js";
 
@@ -44,7 +44,8 @@ export class View {
     this.#app.setCanvasFillMode(FILLMODE_NONE);
     this.#app.autoRender = false;
     const { gsplat } = this.#app.scene;
-    Object.assign(gsplat, { dataFormat: GSPLATDATA_LARGE, minPixelSize: 0, radialSorting: false });
+    Object.assign(gsplat,
+      { dataFormat: GSPLATDATA_LARGE, minPixelSize: 0, radialSorting: false, antiAlias: true });
     drawAsAnnexI(options.graphicsDevice);
     this.#camera = new Entity("camera", this.#app);
     this.#camera.addComponent("camera", {
@@ -122,8 +123,9 @@ export class View {
     this.#mark();
   }
 
-  // camera: of annex I, for the whole canvas; near: the depth at which Gaussians begin to show.
-  setCamera(camera, near) {
+  // camera: of annex I, for the whole canvas; near: the depth at which Gaussians begin to show;
+  // pixel: the width of a pixel (adapters/pixel.js).
+  setCamera(camera, near, pixel) {
     const { width, height, fx, fy, cx, cy, R } = camera, far = DEPTHS * near;
     // Camera axes of PlayCanvas point right, up, back.
     const axes = new Mat4();
@@ -136,6 +138,7 @@ export class View {
       0, 0, 2 * far * near / (near - far), 0,
     ]);
     Object.assign(this.#camera.camera, { nearClip: near, farClip: far });
+    setPixel(this.#app.graphicsDevice, pixel);
     this.#change();
   }
 

@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { basename, dirname, join } from "node:path";
 import { after, before, test } from "node:test";
 import { Browser } from "./browser.mjs";
-import { CAMERA, PLAYER, rendered, SCENE } from "./fixture.mjs";
+import { CAMERA, PLAYER, rendered, SCENE, withPixel } from "./fixture.mjs";
 import { psnr } from "./pictures.mjs";
 import { serve } from "./server.mjs";
 
@@ -22,15 +22,16 @@ after(async () => {
 });
 
 // Decibels of the adapter's pictures at two times.
-async function shown(t, adapter, option = "") {
-  const page = await browser.page(CAMERA.width, CAMERA.height);
+async function shown(t, adapter, { option = "", camera = CAMERA } = {}) {
+  const page = await browser.page(camera.width, camera.height);
   await page.open(`${server.origin}/?adapter=${adapter}&file=${basename(SCENE)}${option}`);
   const decibels = [];
   for (const frame of FRAMES) {
-    await page.evaluate(`show(${JSON.stringify(CAMERA)}, ${frame})`);
-    decibels.push(await psnr(page, await page.screenshot(), rendered(frame / LAST)));
+    await page.evaluate(`show(${JSON.stringify(camera)}, ${frame})`);
+    decibels.push(await psnr(page, await page.screenshot(), rendered(frame / LAST, camera)));
   }
-  t.diagnostic(`${adapter}${option}: ${decibels.map((v) => v.toFixed(1)).join(", ")} dB`);
+  t.diagnostic(`${adapter}${option}, pixels ${camera.pixel} times as wide: ` +
+    `${decibels.map((v) => v.toFixed(1)).join(", ")} dB`);
   assert.deepEqual(page.errors, []);
   return { page, least: Math.min(...decibels) };
 }
@@ -40,7 +41,14 @@ test("PlayCanvas: a GSplatContainer", async (t) => {
 });
 
 test("PlayCanvas: a GSplatContainer, drawn by its own shaders", async (t) => {
-  assert.ok((await shown(t, "playcanvas", "&plain")).least >= 20);
+  const camera = { ...CAMERA, pixel: 1 }; // they know nothing of annex I.4
+  assert.ok((await shown(t, "playcanvas", { option: "&plain", camera })).least >= 20);
+});
+
+test("PlayCanvas and Spark: wide pixels", async (t) => {
+  const camera = withPixel(2);
+  assert.ok((await shown(t, "playcanvas", { camera })).least >= 40);
+  assert.ok((await shown(t, "spark", { camera })).least >= 30);
 });
 
 test("SuperSplat: a FrameSource", async (t) => {

@@ -18,8 +18,16 @@ export const PLAYER = needed("TED4_PLAYER"); // folder of the built player
 const PROGRAMS = needed("TED4_PROGRAMS"); // folder of ted4dec and ted4edit
 export const OUT = process.env.TED4_OUT ?? mkdtempSync(join(tmpdir(), "ted4-player-"));
 
-const LENS = { width: 320, height: 240, fx: 320, fy: 320, cx: 160, cy: 120 };
+// Twice as many pixels each way as the pictures of which the scene was learnt.
+const LENS = { width: 320, height: 240, fx: 320, fy: 320, cx: 160, cy: 120, pixel: 0.5 };
 export const CAMERA = lookingAt(LENS, [-1.3, -3.2, 1.9], [0, 0, 0.3], [0, 0, 1]);
+
+// The same view in pixels r times as wide as those of training (annex I.4).
+export function withPixel(r) {
+  const s = CAMERA.pixel / r, { width, height, fx, fy, cx, cy } = CAMERA;
+  return { ...CAMERA, width: width * s, height: height * s, fx: fx * s, fy: fy * s, cx: cx * s,
+    cy: cy * s, pixel: r };
+}
 
 export function decode(...args) {
   return execFileSync(join(PROGRAMS, "ted4dec"), args, { encoding: "utf8" });

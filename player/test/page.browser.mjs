@@ -8,7 +8,7 @@ import { basename, dirname, join } from "node:path";
 import { after, before, test } from "node:test";
 import { fileURLToPath, pathToFileURL } from "node:url";
 import { Browser } from "./browser.mjs";
-import { CAMERA, decode, edit, keep, OUT, PLAYER, rendered, SCENE } from "./fixture.mjs";
+import { CAMERA, decode, edit, keep, OUT, PLAYER, rendered, SCENE, withPixel } from "./fixture.mjs";
 import { lookingAt } from "../page/camera.js";
 import { psnr, sideBySide } from "./pictures.mjs";
 import { serve } from "./server.mjs";
@@ -70,6 +70,21 @@ test("pictures at three times agree with those of ted4dec --render", async (t) =
     keep(`frame-${frame}.jpg`, await sideBySide(page, [shot, reference]));
     assert.ok(decibels >= LEAST_PSNR, `frame ${frame}: ${decibels} dB`);
   }
+});
+
+test("pixels of other widths than those of training agree with ted4dec, too", async (t) => {
+  await showBare();
+  await page.evaluate("ted4Player.clock.seek(0); 0");
+  for (const r of [0.25, 1, 2]) {
+    const camera = withPixel(r);
+    await page.resize(camera.width, camera.height);
+    await page.until(`document.getElementById("picture").width === ${camera.width}`);
+    await page.until("ted4Player.isSettled");
+    const decibels = await psnr(page, await page.screenshot(), rendered(0, camera));
+    t.diagnostic(`${r} times as wide: ${decibels.toFixed(1)} dB`);
+    assert.ok(decibels >= LEAST_PSNR, `${r} times as wide: ${decibels} dB`);
+  }
+  await page.resize(CAMERA.width, CAMERA.height);
 });
 
 test("of times that follow each other closely the last one stays on the screen", async () => {

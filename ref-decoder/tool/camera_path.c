@@ -134,10 +134,12 @@ static void set_lens(ted4_view *v, const ted4_view *size, const ted4_view *a, co
                 ha = (float)size->height / (float)a->height,
                 hb = (float)size->height / (float)b->height;
 
-    *v = (ted4_view) { .pixel = size->pixel,
+    const float fx = between(a->fx * wa, b->fx * wb, u);
+
+    *v = (ted4_view) { .pixel = size->pixel * size->fx / fx,
                        .width = size->width,
                        .height = size->height,
-                       .fx = between(a->fx * wa, b->fx * wb, u),
+                       .fx = fx,
                        .fy = between(a->fy * ha, b->fy * hb, u),
                        .cx = between(a->cx * wa, b->cx * wb, u),
                        .cy = between(a->cy * ha, b->cy * hb, u) };

@@ -13,8 +13,10 @@
  * none does. file: [size], accepted by a decoder. */
 void ted4_file_up(const uint8_t *file, size_t size, float up[3]);
 
-/* Reads the cameras of a kind into *l, from the last chunk that has them. Returns 0, or -1 if out
- * of memory; l->n is 0 if the file has none. */
+/* Reads the cameras of a kind into *l, from the last chunk that has them. Those of a path get the
+ * width of their pixels (annex I.4) if the file has the cameras that took its pictures. Returns 0,
+ * or -1 if out of memory; l->n is 0 if the file has none of the kind. l needs
+ * ted4_camera_list_free() in either case. */
 int ted4_file_cameras(const uint8_t *file, size_t size, ted4_cams_kind kind, ted4_camera_list *l);
 
 #endif

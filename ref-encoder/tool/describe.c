@@ -189,7 +189,8 @@ uint8_t *ted4_describe_png(const char *path, size_t *size, char *why, size_t why
     return png;
 }
 
-/* The view of the first training picture, scaled to at most TED4_THUMBNAIL_MADE pixels. */
+/* The view of the first training picture, scaled to at most TED4_THUMBNAIL_MADE pixels, which are
+ * wider than those of training (annex I.4). */
 static ted4_view small_view(const ted4_dataset *d)
 {
     size_t i = 0;
@@ -208,6 +209,7 @@ static ted4_view small_view(const ted4_dataset *d)
     v.fy *= s;
     v.cx *= s;
     v.cy *= s;
+    v.pixel = 1.0f / s;
     return v;
 }
 

@@ -317,6 +317,39 @@ static void write_scene_file(const char *name)
          name);
 }
 
+/* A path of a file is drawn with pixels of another width if the file's cameras, at half its size,
+ * tell what was learnt (annex I.4); and so is a path whose first camera says it. */
+static void check_path_pixel(void)
+{
+    char path[PATH_SIZE];
+    json_t *list, *camera, *value;
+    const char *member;
+    size_t i;
+
+    path_of(path, "cameras.json");
+    list = json_load_file(path, 0, NULL);
+    assert_non_null(list);
+    json_array_foreach(list, i, camera) json_object_foreach(camera, member, value)
+    {
+        if (json_is_integer(value))
+            json_integer_set(value, 2 * json_integer_value(value));
+        else if (json_is_real(value))
+            json_real_set(value, 2.0 * json_real_value(value));
+    }
+    save(json_incref(list), "large.json");
+    json_object_set_new(json_array_get(list, 0), "pixel", json_real(0.5));
+    save(list, "halves.json");
+    assert_int_equal(run("ted4edit v1.ted4 -o l.ted4 --cameras cameras.json --path large.json && "
+                         "ted4dec l.ted4 --render l_%%d.png --path file --views 3 && "
+                         "ted4dec v1.ted4 --render h_%%d.png --path halves.json --views 3 && "
+                         "cmp l_0.png h_0.png && cmp l_1.png h_1.png && cmp l_2.png h_2.png"),
+                     0);
+    assert_int_equal(run("ted4edit v1.ted4 -o g.ted4 --path large.json && "
+                         "ted4dec g.ted4 --render g_%%d.png --path file --views 3 && "
+                         "cmp -s g_0.png l_0.png"),
+                     1);
+}
+
 /* The same cameras as a list, as a transforms file, with sizes from pictures, and as the file
  * itself says: the same pictures. */
 static void test_cameras(void **state)
@@ -354,6 +387,7 @@ static void test_cameras(void **state)
                          "ted4dec c.ted4 --render q_%%d.png --path list.json --views 3 --time 0 && "
                          "cmp q_0.png view_0.png && ! cmp -s q_2.png view_2.png"),
                      0);
+    check_path_pixel();
     assert_int_equal(run("ted4dec v1.ted4 --render f_%%02d.png --path list.json"), 0);
     for (uint32_t i = 0; i <= file[1].info.frames; i++) {
         char name[32];

@@ -5,10 +5,11 @@ import {
   Entity, FILLMODE_NONE, GSplatComponentSystem, GSPLATDATA_LARGE, Mat4, RESOLUTION_FIXED,
   TONEMAP_NONE,
 } from "playcanvas";
-import { drawAsAnnexI } from "../playcanvas-kernel.js";
+import { drawAsAnnexI, setPixel } from "../playcanvas-kernel.js";
 import { canvas, matrices } from "./scene.js";
 
-export async function startApp() {
+// camera: of annex I, with pixel, the width of its pixels.
+export async function startApp(camera) {
   const options = new AppOptions();
   options.graphicsDevice = await createGraphicsDevice(canvas,
     { deviceTypes: [DEVICETYPE_WEBGL2], antialias: false, alpha: false });
@@ -18,7 +19,11 @@ export async function startApp() {
   app.setCanvasFillMode(FILLMODE_NONE);
   Object.assign(app.scene.gsplat, { dataFormat: GSPLATDATA_LARGE, minPixelSize: 0 });
   // ?plain: as an application draws that knows nothing of annex I.
-  if (!new URLSearchParams(location.search).has("plain")) drawAsAnnexI(app.graphicsDevice);
+  if (!new URLSearchParams(location.search).has("plain")) {
+    app.scene.gsplat.antiAlias = true;
+    drawAsAnnexI(app.graphicsDevice);
+    setPixel(app.graphicsDevice, camera.pixel);
+  }
   app.start();
   return app;
 }

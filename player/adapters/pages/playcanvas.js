@@ -9,7 +9,7 @@ let app = null, scene, container, entity;
 
 async function start(camera) {
   scene = await openScene();
-  app = await startApp();
+  app = await startApp(camera);
   addCamera(app, camera, scene.info);
   container = createContainer(app.graphicsDevice, scene.info.gaussians);
   entity = new Entity("gaussians", app);

@@ -2,10 +2,9 @@
 import { SparkRenderer, SplatMesh } from "@sparkjsdev/spark";
 import { Camera, Color, Scene, SRGBColorSpace, WebGLRenderer } from "three";
 import { centreOf } from "../../page/camera.js";
-import { createPackedSplats, updatePackedSplats } from "../spark.js";
+import { annexI, createPackedSplats, updatePackedSplats } from "../spark.js";
 import { canvas, matrices, openScene } from "./scene.js";
 
-const AS_ANNEX_I = { preBlurAmount: 0.3, blurAmount: 0, sortRadial: false, minAlpha: 1 / 255 };
 let renderer = null, spark, world, eye, scene, packed, mesh;
 
 async function start(camera) {
@@ -14,7 +13,7 @@ async function start(camera) {
   renderer.setSize(camera.width, camera.height, false);
   renderer.setClearColor(
     new Color().setRGB(...scene.info.background.map((v) => v / 255), SRGBColorSpace));
-  spark = new SparkRenderer({ renderer, autoUpdate: false, ...AS_ANNEX_I });
+  spark = new SparkRenderer({ renderer, autoUpdate: false, ...annexI(camera.pixel) });
   packed = createPackedSplats(scene.info.gaussians);
   mesh = new SplatMesh({ packedSplats: packed });
   world = new Scene();

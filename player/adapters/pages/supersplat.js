@@ -16,7 +16,7 @@ function createAsset(data, name) {
 
 async function start(camera) {
   const scene = await openScene();
-  app = await startApp();
+  app = await startApp(camera);
   addCamera(app, camera, scene.info);
   source = new FrameSource(scene, createAsset, centreOf(camera));
   globalThis.frameCount = source.frameCount;

@@ -1,13 +1,14 @@
 // consumer.ts - a program in TypeScript that uses every function of the adapters, and times;
 // types.mjs has it compiled. SPDX-License-Identifier: BSD-2-Clause
-import { SplatMesh, type PackedSplats } from "@sparkjsdev/spark";
+import { SparkRenderer, SplatMesh, type PackedSplats } from "@sparkjsdev/spark";
 import type { GraphicsDevice, GSplatContainer, GSplatData, Quat } from "playcanvas";
 import {
   Decoder, Scene, Ted4Client, Ted4Error, timeOfFragment, type Gaussians, type Vector,
 } from "ted4";
-import { drawAsAnnexI } from "ted4/adapters/playcanvas-kernel.js";
+import { pixelWidth, widening } from "ted4/adapters/pixel.js";
+import { drawAsAnnexI, setPixel } from "ted4/adapters/playcanvas-kernel.js";
 import { createContainer, updateContainer } from "ted4/adapters/playcanvas.js";
-import { createPackedSplats, updatePackedSplats } from "ted4/adapters/spark.js";
+import { annexI, createPackedSplats, updatePackedSplats } from "ted4/adapters/spark.js";
 import { FrameSource, gsplatData } from "ted4/adapters/supersplat.js";
 
 const eye: Vector = [0, 0, -4];
@@ -18,6 +19,9 @@ export async function useAll(device: GraphicsDevice, bytes: Uint8Array): Promise
   const { num, den } = timeOfFragment("#t=1.5", scene.info) ?? { num: 0, den: 1 };
   const gaussians: Gaussians = scene.gaussians(num, den, eye);
   drawAsAnnexI(device);
+  const pixel = pixelWidth(800, [{ fx: 400 }]);
+  setPixel(device, pixel);
+  console.log(widening(pixel).learnt + widening(pixel).square);
   const container: GSplatContainer = createContainer(device, gaussians.n);
   updateContainer(container, gaussians);
   const packedSplats: PackedSplats = createPackedSplats(gaussians.n);
@@ -37,6 +41,12 @@ export async function useInWorker(bytes: ArrayBuffer): Promise<FrameSource<GSpla
   await client.load(new URL("ted4.wasm", document.baseURI));
   const scene = await client.open(bytes);
   return new FrameSource(scene, (frame) => frame, eye, [0, 0, 1]);
+}
+
+type SparkOptions = ConstructorParameters<typeof SparkRenderer>[0];
+
+export function sparkRenderer(options: SparkOptions): SparkRenderer {
+  return new SparkRenderer({ ...options, ...annexI(0.5) });
 }
 
 export function misuse(device: GraphicsDevice, source: FrameSource<string>): void {

@@ -1,0 +1,20 @@
+// pixel.js - by how much a renderer widens Gaussians whose pixels are not those of training (annex
+// I.4). The width of a pixel is counted in pixels of the pictures of which the scene was learnt.
+// SPDX-License-Identifier: BSD-2-Clause
+
+const LEARNT = 0.3; // what training adds to both variances, square pixels (I.2)
+const SQUARE = 1 / 12; // variance of a pixel
+
+// The width of a pixel drawn with the focal length fx, pixels; cameras: those that took the
+// pictures (camerasOf(chunks).cameras), of which the middle one counts. 1 if there are none.
+export function pixelWidth(fx, cameras) {
+  const learnt = cameras.map((camera) => camera.fx).sort((a, b) => a - b);
+  return learnt.length > 0 ? learnt[learnt.length >> 1] / fx : 1;
+}
+
+// For pixels of this width, in square pixels as they are drawn: what to add to both variances at
+// the same opacity, and what to add after that while opacity falls, so that a Gaussian covers as
+// much as before.
+export function widening(pixel) {
+  return { learnt: LEARNT / pixel ** 2, square: Math.max(0, 1 - pixel ** -2) * SQUARE };
+}
