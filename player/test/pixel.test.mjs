@@ -12,7 +12,7 @@ test("the middle one of a file's cameras tells the width of a pixel", () => {
   assert.equal(pixelWidth(300, cameras(600, 150)), 2); // the larger one in the middle
 });
 
-test("Gaussians are widened as in training, and in wider pixels by their part of the square", () => {
+test("Gaussians are widened as in training, and in wider pixels by the rest of them", () => {
   assert.deepEqual(widening(1), { learnt: 0.3, square: 0 });
   assert.deepEqual(widening(0.5), { learnt: 1.2, square: 0 });
   const { learnt, square } = widening(2);
