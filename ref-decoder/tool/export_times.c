@@ -7,6 +7,7 @@
 
 #include "actions.h"
 #include "cli.h"
+#include "file_cameras.h"
 #include "json_string.h"
 #include "output.h"
 #include "plural.h"
@@ -115,7 +116,18 @@ static int sh_degree(const ted4_settings *set, const ted4_info *info)
     return wanted < set->format->max_sh_degree ? wanted : set->format->max_sh_degree;
 }
 
-int ted4_action_export(ted4_session *s)
+/* Reads the cameras for which Gaussians are widened. */
+static int load_taken(const ted4_session *s, ted4_camera_list *taken)
+{
+    if (ted4_file_cameras(s->data, s->size, TED4_CAMS_TAKEN, taken) != 0)
+        return ted4_session_failed(TED4_E_LIMIT_MEMORY, s);
+    return taken->n > 0 ? TED4_EXIT_FINE
+                        : ted4_session_refused(s->set->input,
+                                               "--widen needs the cameras that took the pictures, "
+                                               "and the file has none (ted4enc --cameras)");
+}
+
+static int export_times(ted4_session *s, const ted4_camera_list *taken)
 {
     const ted4_settings *const set = s->set;
     const size_t n = ted4_session_times(s);
@@ -128,6 +140,7 @@ int ted4_action_export(ted4_session *s)
         .camera = { set->centre[0], set->centre[1], set->centre[2] },
         .sh_degree = sh_degree(set, &s->info),
         .turn = ted4_has_direction(ted4_session_up(s)) ? &turn : NULL,
+        .widen = set->widen ? taken : NULL,
         .keep_all = set->keep_all || (is_sequence && !set->drop_faint),
     };
     double worst_rms = 0.0;
@@ -150,5 +163,16 @@ int ted4_action_export(ted4_session *s)
             "ted4dec: note: spherical harmonics of degree %d stand for view-dependent colours; rms "
             "error at most %.4f\n",
             how.sh_degree, worst_rms);
+    return code;
+}
+
+int ted4_action_export(ted4_session *s)
+{
+    ted4_camera_list taken = { 0 };
+    int code = s->set->widen ? load_taken(s, &taken) : TED4_EXIT_FINE;
+
+    if (code == TED4_EXIT_FINE)
+        code = export_times(s, &taken);
+    ted4_camera_list_free(&taken);
     return code;
 }

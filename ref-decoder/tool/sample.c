@@ -8,7 +8,9 @@
 #include <stdlib.h>
 
 #include "record.h"
+#include "render/view.h"
 #include "sh.h"
+#include "widen.h"
 
 /* Distance of that camera in normalised space, where anchors lie in [-1, 1]: directions are exact
  * to about 2^-20. */
@@ -105,6 +107,17 @@ static ted4_status sample_kept(const ted4_sampler *s, const ted4_query *q, const
     return fit_colours(s, q, out, out->block + n * TED4_RECORD_FLOATS);
 }
 
+/* Widens what copy_kept has filled. */
+static ted4_status widen(const ted4_sampler *s, ted4_sample *out)
+{
+    const size_t n = out->frame.n;
+    const float near_z = (float)ldexp(TED4_VIEW_NEAR, s->info->exponent);
+    float *const scale[3] = { out->block + 3 * n, out->block + 4 * n, out->block + 5 * n };
+
+    return ted4_widen(s->widen, near_z, n, out->frame.mean, scale) == 0 ? TED4_OK
+                                                                        : TED4_E_LIMIT_MEMORY;
+}
+
 /* Turns what copy_kept and fit_colours have filled. */
 static void turn(const ted4_turn *t, ted4_sample *out)
 {
@@ -127,6 +140,8 @@ ted4_status ted4_sample_make(const ted4_sampler *s, uint32_t num, uint32_t den, 
     *out = (ted4_sample) { .frame.comment = "" };
     if (status == TED4_OK)
         status = sample_kept(s, &q, &g, out);
+    if (status == TED4_OK && s->widen != NULL)
+        status = widen(s, out);
     if (status == TED4_OK && s->turn != NULL)
         turn(s->turn, out);
     if (status != TED4_OK)

@@ -1,10 +1,11 @@
 /* sample.h - the Gaussians at one time, ready for export: nearly transparent ones are dropped, and
  * spherical harmonics approximate the view-dependent heads (spec 11.5).
- * Depends on ted4.h, export.h.
+ * Depends on ted4.h, export.h, turn.h, widen.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_SAMPLE_H
 #define TED4_SAMPLE_H
 
+#include "camera_list.h"
 #include "export.h"
 #include "ted4.h"
 #include "turn.h"
@@ -15,8 +16,9 @@ typedef struct {
     const ted4_parallel *parallel;
     float camera[3]; /* camera centre in the scene, used for everything except fitted colours */
     int sh_degree;   /* -1: no spherical harmonics */
-    const ted4_turn *turn; /* rotation of the result; NULL: none */
-    int keep_all;          /* 0: Gaussians whose opacity is below 1/255 are dropped */
+    const ted4_turn *turn;         /* rotation of the result; NULL: none */
+    const ted4_camera_list *widen; /* for these cameras (widen.h); NULL: scales as decoded */
+    int keep_all;                  /* 0: Gaussians whose opacity is below 1/255 are dropped */
 } ted4_sampler;
 
 typedef struct {

@@ -50,6 +50,10 @@ static int check_needs(const ted4_settings *s)
         return refuse("--up", "only with -o or --orbit");
     if (turns && exports && s->format == &ted4_format_raw)
         return refuse("--up", ".raw holds the records as they were decoded");
+    if (s->widen && !exports)
+        return refuse("--widen", "only with -o");
+    if (s->widen && s->format == &ted4_format_raw)
+        return refuse("--widen", ".raw holds the records as they were decoded");
     if (s->keep_all && !exports)
         return refuse("--keep-all", "only with -o");
     if (s->drop_faint && !exports)
@@ -92,14 +96,14 @@ static int check_stdout(const ted4_settings *s)
 
 int ted4_settings_check(ted4_settings *s)
 {
-    int code = check_needs(s);
+    int code = check_stdout(s);
 
+    if (code == 0 && s->stdout_format != NULL)
+        s->format = s->stdout_format;
     if (code == 0)
-        code = check_stdout(s);
+        code = check_needs(s);
     if (code != 0)
         return code;
-    if (s->stdout_format != NULL)
-        s->format = s->stdout_format;
     if (s->output != NULL && s->sh_degree >= 0 && s->format->max_sh_degree < s->sh_degree)
         return refuse_degree(s);
     return check_conflicts(s);

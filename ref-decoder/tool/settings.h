@@ -27,7 +27,7 @@ typedef struct {
     int sh_degree; /* -1: not given */
     int threads;
     int64_t max_memory, max_work; /* limits for decoding and for a query; 0: not given */
-    int keep_all, drop_faint, hash, test, lenient, trace, force, json, quiet, verbose;
+    int keep_all, drop_faint, widen, hash, test, lenient, trace, force, json, quiet, verbose;
 } ted4_settings;
 
 /* Returns 1 if nothing is to be printed or written: the files are only to be checked. */

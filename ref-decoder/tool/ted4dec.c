@@ -27,6 +27,7 @@ enum {
     OPT_CENTRE,
     OPT_SH_DEGREE,
     OPT_UP,
+    OPT_WIDEN,
     OPT_KEEP_ALL,
     OPT_DROP_FAINT,
     OPT_RENDER,
@@ -74,6 +75,9 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
                  "turn what -o writes so that this axis of the scene is up in viewers: x, y, z, "
                  "-x, "
                  "-y, -z, or auto: as the file says (ted4info shows it)" },
+    [OPT_WIDEN] = { 0, "widen", NULL,
+                    "make what -o writes as wide as training saw it, for viewers that draw larger "
+                    "pictures than those of training; the file has to hold its cameras" },
     [OPT_KEEP_ALL] = { 0, "keep-all", NULL,
                        "also write Gaussians whose opacity is below 1/255. Default where the name "
                        "holds a %d, so that all files of a sequence have the same Gaussians" },
@@ -299,10 +303,11 @@ static int set_option(ted4_settings *s, int option, const char *value)
     default: break;
     }
     int *const flag[N_OPTIONS] = { [OPT_KEEP_ALL] = &s->keep_all, [OPT_DROP_FAINT] = &s->drop_faint,
-                                   [OPT_HASH] = &s->hash,         [OPT_TEST] = &s->test,
-                                   [OPT_LENIENT] = &s->lenient,   [OPT_TRACE] = &s->trace,
-                                   [OPT_FORCE] = &s->force,       [OPT_JSON] = &s->json,
-                                   [OPT_QUIET] = &s->quiet,       [OPT_VERBOSE] = &s->verbose };
+                                   [OPT_WIDEN] = &s->widen,       [OPT_HASH] = &s->hash,
+                                   [OPT_TEST] = &s->test,         [OPT_LENIENT] = &s->lenient,
+                                   [OPT_TRACE] = &s->trace,       [OPT_FORCE] = &s->force,
+                                   [OPT_JSON] = &s->json,         [OPT_QUIET] = &s->quiet,
+                                   [OPT_VERBOSE] = &s->verbose };
 
     *flag[option] = 1;
     return 0;

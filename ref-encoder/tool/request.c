@@ -160,10 +160,10 @@ static const ted4_command COMMAND = {
     "ted4-UID in $TMPDIR or /tmp.",
     OPTIONS,
     N_OPTIONS,
-    "Exit codes: 0 fine, 1 the file of --transcode was refused, 2 fine but larger than\n"
-    "--target-size, 3 usage, input, output or resources, 130 stopped by Ctrl-C,\n"
-    "143 by a request to end, 129 because the terminal was closed: after the step, and\n"
-    "after a last checkpoint if --checkpoint is given.\n\n"
+    "Exit codes: 0 fine, 1 the file of --transcode was refused, 2 fine but larger\n"
+    "than --target-size, 3 usage, input, output or resources, 130 stopped by Ctrl-C,\n"
+    "143 by a request to end, 129 because the terminal was closed: after the step,\n"
+    "and after a last checkpoint if --checkpoint is given.\n\n"
     "Examples:\n"
     "  ted4enc --check scene\n"
     "  ted4enc scene -o a.ted4 --preset draft --downscale 2 --cameras\n\n"

@@ -149,61 +149,63 @@ static void expect_refusal(const char *arguments, const char *text)
     free(err);
 }
 
+/* Arguments, and a part of the one line that refuses them. */
+static const char *const wrong[][2] = {
+    { "", "expected one file, found 0" },
+    { "v1.ted4 v0.ted4 --hash", "expected one file, found 2" },
+    { "v1.ted4 out.ply", "expected one file; -o out.ply writes Gaussians" },
+    { "v1.ted4 -o a.doc", "bad value a.doc; expected a name that ends in .ply, .splat, .glb or" },
+    { "v1.ted4 -o a%s.ply", "a%s.ply; expected at most one %d" },
+    { "v1.ted4 -o a.ply", "several frames need a %d in the name" },
+    { "v1.ted4 -o -", "-o -: standard output takes one frame; --time or --frames says which" },
+    { "v1.ted4 -o missing/a%d.ply", "missing/a0.ply: No such file" },
+    { "v1.ted4 --hash --frames 0:999", "--frames" },
+    { "v1.ted4 --hash --frames 1 --time 0", "only one of them" },
+    { "v1.ted4 --time 1.5", "--time: bad value 1.5; expected seconds, as 1.5s, or 0 to 1" },
+    { "v1.ted4 --render a.png", "--render: goes with one of --camera, --orbit and --path" },
+    { "v1.ted4 --render a.png --orbit 3 --path a.json", "goes with one of" },
+    { "v1.ted4 --orbit 3", "only with --render" },
+    { "v1.ted4 --render a.png --orbit 0", "--orbit: bad value 0; expected a whole number from 1" },
+    { "v1.ted4 --render a.png --orbit 1 --views 3", "--views: only with --path" },
+    { "v1.ted4 --render a.png --orbit 2", "several cameras need a %d in the name" },
+    { "v1.ted4 --sh-degree 4", "--sh-degree: bad value 4; expected a whole number from 0 to 3" },
+    { "v1.ted4 -j x", "--threads: bad value x; expected a whole number from 0 to 256" },
+    { "v1.ted4 -j 257", "--threads" },
+    { "v1.ted4 --frames 2-4", "--frames: bad value 2-4; expected one frame, or A:B:STEP" },
+    { "v1.ted4 --max-memory 1G", "--max-memory: bad value 1G; expected a whole number from 1" },
+    { "v1.ted4 --test --trace --json", "only one of them" },
+    { "v1.ted4 --test -o a.ply --time 0", "--test" },
+    { "v1.ted4 --camera-centre 1,2", "--camera-centre: bad value 1,2; expected three" },
+    { "v1.ted4 -o missing/a.ply --time 0", "missing/a.ply" },
+    { "v1.ted4 --render a.png --camera v1.ted4", "v1.ted4: line 1: " },
+    { "v1.ted4 --render a.png --camera nope.json", "nope.json: No such file or directory" },
+    /* What would have no effect. */
+    { "v1.ted4 --render a.png --camera x.json --frames 0", "--frames: only with -o or --hash" },
+    { "v1.ted4 --render a.jpg --camera x.json",
+      "--render: bad value a.jpg; expected a name that ends in .png or .mp4" },
+    { "v1.ted4 --time 0", "--time: only with -o, --hash or --render" },
+    { "v1.ted4 --test --frames 0", "--frames: only with -o or --hash" },
+    { "v1.ted4 --keep-all", "--keep-all: only with -o" },
+    { "v1.ted4 --up z", "--up: only with -o" },
+    { "v1.ted4 --up z --time 0 -o a.raw", ".raw holds the records as they were decoded" },
+    { "v1.ted4 --up z --time 0 -o - --format raw", ".raw holds the records as they were" },
+    { "v1.ted4 --widen", "--widen: only with -o" },
+    { "v1.ted4 --widen --time 0 -o a.raw", ".raw holds the records as they were decoded" },
+    { "v1.ted4 --widen --time 0 -o a.ply", "the file has none (ted4enc --cameras)" },
+    { "v1.ted4 --up up --time 0 -o a.ply", "--up: bad value up; expected x, y, z, -x, -y" },
+    { "v1.ted4 --up auto --time 0 -o a.ply", "does not say which way is up" },
+    { "v1.ted4 --drop-faint", "--drop-faint: only with -o" },
+    { "v1.ted4 -o a.ply --time 0 --keep-all --drop-faint", "only one of them" },
+    { "v1.ted4 --hash --sh-degree 1", "--sh-degree: only with -o" },
+    { "v1.ted4 --hash --camera-centre 1,2,3", "--hash needs --frames or --time" },
+    { "v1.ted4 --time 0 -o a.raw --sh-degree 0", "more than .raw can hold" },
+    { "v1.ted4 --time 0 -o a.splat --sh-degree 1", "more than .splat can hold" },
+    { "v1.ted4 --time 0 -o a.ply --camera-centre 1,2,3", "--camera-centre: has no effect" },
+    { "v1.ted4 -q -v", "-q and -v" },
+};
+
 static void test_usage(void **state)
 {
-    static const char *const wrong[][2] = {
-        { "", "expected one file, found 0" },
-        { "v1.ted4 v0.ted4 --hash", "expected one file, found 2" },
-        { "v1.ted4 out.ply", "expected one file; -o out.ply writes Gaussians" },
-        { "v1.ted4 -o a.doc",
-          "bad value a.doc; expected a name that ends in .ply, .splat, .glb or" },
-        { "v1.ted4 -o a%s.ply", "a%s.ply; expected at most one %d" },
-        { "v1.ted4 -o a.ply", "several frames need a %d in the name" },
-        { "v1.ted4 -o -", "-o -: standard output takes one frame; --time or --frames says which" },
-        { "v1.ted4 -o missing/a%d.ply", "missing/a0.ply: No such file" },
-        { "v1.ted4 --hash --frames 0:999", "--frames" },
-        { "v1.ted4 --hash --frames 1 --time 0", "only one of them" },
-        { "v1.ted4 --time 1.5", "--time: bad value 1.5; expected seconds, as 1.5s, or 0 to 1" },
-        { "v1.ted4 --render a.png", "--render: goes with one of --camera, --orbit and --path" },
-        { "v1.ted4 --render a.png --orbit 3 --path a.json", "goes with one of" },
-        { "v1.ted4 --orbit 3", "only with --render" },
-        { "v1.ted4 --render a.png --orbit 0",
-          "--orbit: bad value 0; expected a whole number from 1" },
-        { "v1.ted4 --render a.png --orbit 1 --views 3", "--views: only with --path" },
-        { "v1.ted4 --render a.png --orbit 2", "several cameras need a %d in the name" },
-        { "v1.ted4 --sh-degree 4",
-          "--sh-degree: bad value 4; expected a whole number from 0 to 3" },
-        { "v1.ted4 -j x", "--threads: bad value x; expected a whole number from 0 to 256" },
-        { "v1.ted4 -j 257", "--threads" },
-        { "v1.ted4 --frames 2-4", "--frames: bad value 2-4; expected one frame, or A:B:STEP" },
-        { "v1.ted4 --max-memory 1G", "--max-memory: bad value 1G; expected a whole number from 1" },
-        { "v1.ted4 --test --trace --json", "only one of them" },
-        { "v1.ted4 --test -o a.ply --time 0", "--test" },
-        { "v1.ted4 --camera-centre 1,2", "--camera-centre: bad value 1,2; expected three" },
-        { "v1.ted4 -o missing/a.ply --time 0", "missing/a.ply" },
-        { "v1.ted4 --render a.png --camera v1.ted4", "v1.ted4: line 1: " },
-        { "v1.ted4 --render a.png --camera nope.json", "nope.json: No such file or directory" },
-        /* What would have no effect. */
-        { "v1.ted4 --render a.png --camera x.json --frames 0", "--frames: only with -o or --hash" },
-        { "v1.ted4 --render a.jpg --camera x.json",
-          "--render: bad value a.jpg; expected a name that ends in .png or .mp4" },
-        { "v1.ted4 --time 0", "--time: only with -o, --hash or --render" },
-        { "v1.ted4 --test --frames 0", "--frames: only with -o or --hash" },
-        { "v1.ted4 --keep-all", "--keep-all: only with -o" },
-        { "v1.ted4 --up z", "--up: only with -o" },
-        { "v1.ted4 --up z --time 0 -o a.raw", ".raw holds the records as they were decoded" },
-        { "v1.ted4 --up up --time 0 -o a.ply", "--up: bad value up; expected x, y, z, -x, -y" },
-        { "v1.ted4 --up auto --time 0 -o a.ply", "does not say which way is up" },
-        { "v1.ted4 --drop-faint", "--drop-faint: only with -o" },
-        { "v1.ted4 -o a.ply --time 0 --keep-all --drop-faint", "only one of them" },
-        { "v1.ted4 --hash --sh-degree 1", "--sh-degree: only with -o" },
-        { "v1.ted4 --hash --camera-centre 1,2,3", "--hash needs --frames or --time" },
-        { "v1.ted4 --time 0 -o a.raw --sh-degree 0", "more than .raw can hold" },
-        { "v1.ted4 --time 0 -o a.splat --sh-degree 1", "more than .splat can hold" },
-        { "v1.ted4 --time 0 -o a.ply --camera-centre 1,2,3", "--camera-centre: has no effect" },
-        { "v1.ted4 -q -v", "-q and -v" },
-    };
-
     (void)state;
     need_programs();
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
@@ -233,6 +235,44 @@ static void test_default_degree(void **state)
         assert_non_null(strstr((const char *)ply, last[view]));
         free(ply);
     }
+}
+
+/* Widened scales are those of the records and a pixel of the file's camera, here of width 1. */
+static void test_widen(void **state)
+{
+    static const char camera[] = "[{\"width\": 2, \"height\": 2, \"fx\": 1, \"fy\": 1, \"cx\": 1, "
+                                 "\"cy\": 1, \"R\": [1,0,0,0,1,0,0,0,1], \"t\": [0,0,0]}]";
+    const double e = ldexp(1.0, file[1].info.exponent);
+    size_t size;
+
+    (void)state;
+    need_programs();
+    write_contents("wide.json", (const uint8_t *)camera, strlen(camera));
+    assert_int_equal(run("ted4edit v1.ted4 -o wide.ted4 --cameras wide.json && "
+                         "ted4dec wide.ted4 -o wide%%d.splat --time 0 --widen && "
+                         "ted4dec wide.ted4 -o thin%%d.splat --time 0"),
+                     0);
+    uint8_t *const wide = contents("wide0.splat", &size), *const thin =
+                                                              contents("thin0.splat", &size);
+
+    for (size_t i = 0; i < file[1].info.n_gaussians; i++) {
+        float mean[3], was[3], is[3];
+
+        memcpy(mean, wide + i * 32, sizeof mean);
+        memcpy(was, thin + i * 32 + 12, sizeof was);
+        memcpy(is, wide + i * 32 + 12, sizeof is);
+        const double x = (double)mean[0], y = (double)mean[1], z = (double)mean[2];
+        const int is_seen = z > 0.02 * e && fabs(x) <= 1.3 * z && fabs(y) <= 1.3 * z;
+        const double width = is_seen ? z : sqrt(x * x + y * y + z * z);
+
+        for (int k = 0; k < 3; k++) {
+            const double want = sqrt((double)was[k] * (double)was[k] + 0.3 * width * width);
+
+            assert_true(fabs((double)is[k] - want) < 1e-5 * want);
+        }
+    }
+    free(wide);
+    free(thin);
 }
 
 /* Z up in the scene: exports have -Y up, with the same records; glTF has +Y up. */
@@ -366,9 +406,9 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_verdicts),       cmocka_unit_test(test_usage),
         cmocka_unit_test(test_default_degree), cmocka_unit_test(test_up),
-        cmocka_unit_test(test_several),        cmocka_unit_test(test_seconds),
-        cmocka_unit_test(test_help),           cmocka_unit_test(test_no_such_format),
-        cmocka_unit_test(test_endless),
+        cmocka_unit_test(test_widen),          cmocka_unit_test(test_several),
+        cmocka_unit_test(test_seconds),        cmocka_unit_test(test_help),
+        cmocka_unit_test(test_no_such_format), cmocka_unit_test(test_endless),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }
