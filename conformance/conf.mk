@@ -28,7 +28,7 @@ conformance: $B/ted4conf $B/ted4dec
 conformance-gen: $B/ted4conf
 	$B/ted4conf gen
 
-# What the vectors reach; page in out/.
+# What the vectors cover; page in out/.
 conformance-cover: $B/ted4conf
 	@mkdir -p out
 	$B/ted4conf cover --html out/coverage.html --json out/coverage.json

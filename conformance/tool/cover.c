@@ -43,7 +43,7 @@ static void write_html(const char *path, const conf_cover *c)
             "coverage</title><style>"
             "body{font:15px sans-serif;margin:2em}table{border-collapse:collapse}td,th{border:1px "
             "solid #bbb;padding:.1em .5em}"
-            ".no{background:#fcc}</style></head><body>\n<h1>What the vectors reach</h1>\n");
+            ".no{background:#fcc}</style></head><body>\n<h1>What the vectors cover</h1>\n");
     json_object_foreach(c->groups, name, group)
     {
         conf_print(&b,

@@ -220,9 +220,9 @@ static void print_mutants(const conf_mutant_list *l, conf_bytes *b)
     for (size_t i = 0; i < l->n; i++)
         if (strcmp(l->m[i].verdict, "survived") == 0 || strcmp(l->m[i].verdict, "no compile") == 0)
             print_survivor(&l->m[i], b);
-    conf_print(b, "\n## Not run since what their results depend on has changed\n\n");
+    conf_print(b, "\n## Not run because their inputs have changed\n\n");
     print_waiting(l, 1, b);
-    conf_print(b, "\n## Not run since this machine has no such kernels\n\n");
+    conf_print(b, "\n## Not run because the machine lacks the kernels\n\n");
     print_waiting(l, 0, b);
     conf_print(b, "\n## Killed\n\n`mutants.csv` names the first vector that killed each of the "
                   "others, and says what was\nwrong with the answer.\n");
@@ -234,9 +234,8 @@ static const char introduction[] =
     "one at a time, and runs each changed decoder over the published vectors. It first checks\n"
     "that the unchanged program, built and run in the same way, passes. A mutant is judged at one\n"
     "place ([README](README.md#mutants)): plain kernels and one thread unless the list names\n"
-    "kernels for vectors, threads, or the decoder of DEFLATE that annex L prints. Results are "
-    "kept\n"
-    "in `mutants.csv` for as long as what they depend on is the same; `ted4conf mutants --check`\n"
+    "kernels for vectors, threads, or the DEFLATE decoder that annex L prints. Results are kept\n"
+    "in `mutants.csv` for as long as their inputs are the same; `ted4conf mutants --check`\n"
     "says how many still hold.\n";
 
 /* Prints how many mutants of each place were killed, of those that were judged. */

@@ -100,9 +100,9 @@ static const ted4_argument run_table[RUN_OPTIONS] = {
     [RUN_SUITE] = { 's', "suite", "DIR",
                     "folder with SUITE.json and vectors/. Default conformance" },
     [RUN_DECODER] = { 'd', "decoder", "CMD",
-                      "the decoder, as a shell would run it; arguments of the contract come behind "
+                      "the decoder, as a shell would run it; arguments of the contract follow "
                       "it" },
-    [RUN_LIST] = { 'l', "list", "FILE", "only the vectors that it names, one a line" },
+    [RUN_LIST] = { 'l', "list", "FILE", "only the vectors that it names, one per line" },
     [RUN_JOBS] = { 'j', "jobs", "N", "runs at a time. Default 2" },
     [RUN_TIMEOUT] = { 't', "timeout", "SECONDS",
                       "for one run; then its whole process group is ended. Default 20" },
@@ -277,7 +277,7 @@ enum {
 
 static const ted4_argument replay_table[REPLAY_OPTIONS] = {
     [REPLAY_SUITE] = { 's', "suite", "DIR", "folder with vectors/. Default conformance" },
-    [REPLAY_LIST] = { 'l', "list", "FILE", "only the vectors that it names, one a line" },
+    [REPLAY_LIST] = { 'l', "list", "FILE", "only the vectors that it names, one per line" },
     [REPLAY_STOP] = { 0, "stop", NULL, "at the first failure" },
     [REPLAY_NAMES] = { 0, "names", NULL, "say each vector's id before its turn" },
     [REPLAY_WAYS] = { 0, "ways", NULL,
@@ -344,9 +344,9 @@ static const ted4_argument mutants_table[MUTANTS_OPTIONS] = {
                           "compiler and flags, those of the decoder; needed when something is to "
                           "be run" },
     [MUTANTS_FLAGS] = { 0, "flags", "SUFFIX=FLAGS",
-                        "flags for the sources that end so; may be given several times" },
-    [MUTANTS_LIBRARIES] = { 0, "libraries", "LIBS", "behind the objects when linking" },
-    [MUTANTS_ONLY] = { 0, "only", "ID", "mutants whose id begins so" },
+                        "flags for sources with this suffix; may be given several times" },
+    [MUTANTS_LIBRARIES] = { 0, "libraries", "LIBS", "after the objects when linking" },
+    [MUTANTS_ONLY] = { 0, "only", "ID", "mutants whose id begins with ID" },
     [MUTANTS_JOBS] = { 'j', "jobs", "N", "mutants at a time. Default 1" },
     [MUTANTS_TIMEOUT] = { 't', "timeout", "SECONDS", "for one mutant's replay. Default 300" },
     [MUTANTS_CHECK] = { 0, "check", NULL,

@@ -214,8 +214,8 @@ static inline void annex_b_of_compact(FILE *out)
     fprintf(out,
             "\n"
             "## B.3 Profile Compact\n\n"
-            "The scene of B.2, but for z of anchor 1, which is 0.75, so that the positions\n"
-            "lie on a grid of 6 bits. All blobs are of mode 2. The file has %zu bytes where\n"
+            "This is the scene of B.2, except that z of anchor 1 is 0.75, so that the\n"
+            "positions lie on a grid of 6 bits. All blobs are of mode 2. The file has %zu bytes where\n"
             "that of B.2 has %zu. The file of B.1 has %zu bytes in profile Compact if its\n"
             "anchor lies in place (63, 63, 63) and NETE is of mode 2, and no valid file has\n"
             "fewer: the substreams of POSN and NETE need a state each, and a blob of mode 2\n"

@@ -127,7 +127,7 @@ static inline void annex_c(FILE *out)
 
     fprintf(out,
             "# Annex C (informative): levels in numbers\n\n"
-            "The table shows what a decoder has to be ready for at each level: the largest\n"
+            "The table shows what a decoder has to handle at each level: the largest\n"
             "values that the formulas of 13.3 and 13.4 give within the bounds of 13.1, for\n"
             "any header. Hardly any file comes near all of them at once. The annex is made\n"
             "by `make spec-annexes`.\n\n"

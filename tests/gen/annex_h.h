@@ -121,7 +121,7 @@ static inline void annex_h_scene(FILE *out)
             " (6 N bytes in one payload); Compact: %s; level | 6.1, 8 |\n",
             annex_h_find("n_anchors")->low, UINT32_MAX / 6,
             annex_h_text(annex_h_find("n_anchors")->high).text);
-    fprintf(out, "| anchors a tile | 1 | %" PRIu32 " | 6.1 |\n", h.tile_size);
+    fprintf(out, "| anchors per tile | 1 | %" PRIu32 " | 6.1 |\n", h.tile_size);
     annex_h_row(out, "offsets K", "n_offsets");
     fprintf(out, "| Gaussians G | 0 | N K | 11 |\n");
     annex_h_row(out, "feature F", "feature_dim");
@@ -224,8 +224,8 @@ static inline void annex_h(FILE *out)
     annex_h_rest(out);
     fprintf(out, "\n"
                  "The limits that a decoder may set for itself are those on memory\n"
-                 "(`limit.memory`) and on work (`limit.work`); anything else it must take up to\n"
-                 "its level (R-DEC-007).\n");
+                 "(`limit.memory`) and on work (`limit.work`); it has to handle anything\n"
+                 "else up to its level (R-DEC-007).\n");
 }
 
 #endif

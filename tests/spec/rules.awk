@@ -17,10 +17,11 @@ BEGIN {
 function heading() {
     print "# Annex G (informative): index of rules"
     print ""
-    print "Made from the text by `make spec-annexes`. \"stream\" rules are those " \
-        "that a byte string can"
-    print "break; the others bind whom the column names. The word is the strongest of BCP 14 in " \
-        "the rule."
+    print "`make spec-annexes` generates this annex from the text. Rules that bind \"stream\" are " \
+        "those that a"
+    print "byte string can break; the other rules bind the party that the column names. The word " \
+        "is the"
+    print "strongest of BCP 14 in the rule."
     print ""
     print "| rule | section | binds | word | errors |"
     print "|---|---|---|---|---|"
