@@ -211,16 +211,17 @@ static inline void annex_b_of_compact(FILE *out)
     data = annex_b_encode(annex_b_dynamic(), &n_dynamic);
     free(data);
     data = annex_b_encode(annex_b_compact(), &size);
-    fprintf(out,
-            "\n"
-            "## B.3 Profile Compact\n\n"
-            "This is the scene of B.2, except that z of anchor 1 is 0.75, so that the\n"
-            "positions lie on a grid of 6 bits. All blobs are of mode 2. The file has %zu bytes where\n"
-            "that of B.2 has %zu. The file of B.1 has %zu bytes in profile Compact if its\n"
-            "anchor lies in place (63, 63, 63) and NETE is of mode 2, and no valid file has\n"
-            "fewer: the substreams of POSN and NETE need a state each, and a blob of mode 2\n"
-            "in NETR has 14 exponents.\n",
-            size, n_dynamic, n_smallest);
+    fprintf(
+        out,
+        "\n"
+        "## B.3 Profile Compact\n\n"
+        "This is the scene of B.2, except that z of anchor 1 is 0.75, so that the\n"
+        "positions lie on a grid of 6 bits. All blobs are of mode 2. The file has %zu\n"
+        "bytes where that of B.2 has %zu. The file of B.1 has %zu bytes in profile Compact if its\n"
+        "anchor lies in place (63, 63, 63) and NETE is of mode 2, and no valid file has\n"
+        "fewer: the substreams of POSN and NETE need a state each, and a blob of mode 2\n"
+        "in NETR has 14 exponents.\n",
+        size, n_dynamic, n_smallest);
     annex_b_compact_file(out, data, size);
     free(data);
 }

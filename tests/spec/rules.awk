@@ -17,8 +17,8 @@ BEGIN {
 function heading() {
     print "# Annex G (informative): index of rules"
     print ""
-    print "`make spec-annexes` generates this annex from the text. Rules that bind \"stream\" are " \
-        "those that a"
+    print "`make spec-annexes` generates this annex from the text. Rules that bind \"stream\" " \
+        "are those that a"
     print "byte string can break; the other rules bind the party that the column names. The word " \
         "is the"
     print "strongest of BCP 14 in the rule."
