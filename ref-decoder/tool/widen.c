@@ -46,8 +46,12 @@ int ted4_widen(const ted4_camera_list *taken, float near_z, size_t n, const floa
     for (size_t i = 0; i < n; i++) {
         const float width = sqrtf(TED4_RASTER_BLUR) * (seen[i] < INFINITY ? seen[i] : away[i]);
 
-        for (int k = 0; k < 3; k++)
-            scale[k][i] = hypotf(scale[k][i], width);
+        for (int k = 0; k < 3; k++) {
+            const float wide = hypotf(scale[k][i], width);
+
+            if (wide < INFINITY)
+                scale[k][i] = wide;
+        }
     }
     free(seen);
     return 0;

@@ -73,6 +73,21 @@ static void test_unseen(void **state)
     near(gained(two, 2, 0, 0, -2), 36);
 }
 
+/* A camera so far away that its pixel has no width in binary32 leaves scales as they are. */
+static void test_too_far(void **state)
+{
+    ted4_listed_camera camera = ahead(1e-6f);
+    const ted4_camera_list taken = { .camera = &camera, .n = 1 };
+    const float zero = 0.0f, *const mean[3] = { &zero, &zero, &zero };
+    float s[3] = { 1.0f, 2.0f, 3.0f };
+
+    (void)state;
+    camera.view.t[2] = 3e38f;
+    assert_int_equal(ted4_widen(&taken, 0.02f, 1, mean, (float *const[3]) { &s[0], &s[1], &s[2] }),
+                     0);
+    assert_true(s[0] == 1.0f && s[1] == 2.0f && s[2] == 3.0f);
+}
+
 static ted4_view before_scene(const ted4_info *info)
 {
     ted4_view v = ahead(SIDE).view;
@@ -150,6 +165,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_width),
         cmocka_unit_test(test_unseen),
+        cmocka_unit_test(test_too_far),
         cmocka_unit_test(test_pictures),
     };
 
