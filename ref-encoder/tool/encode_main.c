@@ -289,6 +289,18 @@ static int scatter(const encoder *e, ted4_dataset *d, ted4_message *m)
     return 0;
 }
 
+/* Takes the rate of --fps, unless the scene states another one. 0: not given. */
+static int set_rate(ted4_dataset *d, double rate, ted4_message *m)
+{
+    if (rate > 0 && d->rate > 0 && rate != d->rate) {
+        snprintf(m->text, sizeof m->text,
+                 "--fps: the scene states %.9g frames per second, not %.9g", d->rate, rate);
+        return -1;
+    }
+    d->rate = rate > 0 ? rate : d->rate;
+    return 0;
+}
+
 /* Loads the scene, and checks or encodes it as requested. Returns the exit status. */
 static int work(const encoder *e)
 {
@@ -310,7 +322,12 @@ static int work(const encoder *e)
 
     now(teller, TED4_TELL_LOADING, r->scene);
     ted4_teller_say(teller, "loading %s", r->scene);
-    if (ted4_dataset_load(&d, r->scene, &wanted, &m) != 0) {
+
+    const int unread = ted4_dataset_load(&d, r->scene, &wanted, &m) != 0;
+
+    if (unread || set_rate(&d, r->rate, &m) != 0) {
+        if (!unread)
+            ted4_dataset_free(&d);
         if (r->check)
             ted4_check_report(NULL, &r->options, m.text, r->json);
         return complain(e, m.text);

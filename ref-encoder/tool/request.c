@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "data/frame_rate.h"
 #include "edit.h"
 #include "norm/syntax.h"
 #include "ted4.h"
@@ -26,6 +27,7 @@ enum {
     OPT_SET,
     OPT_DOWNSCALE,
     OPT_MAX_FRAMES,
+    OPT_FPS,
     OPT_BOUNDS,
     OPT_BLACK,
     OPT_ALPHA,
@@ -84,6 +86,9 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
     [OPT_DOWNSCALE] = { 0, "downscale", "N", "integer area averaging of the pictures" },
     [OPT_MAX_FRAMES] = { 0, "max-frames", "N",
                          "only so many times, the first ones (default: all, 300 of Neu3D)" },
+    [OPT_FPS] = { 0, "fps", "N",
+                  "frames per second, of a scene that does not say it: 6, 23.976, 30000/1001. "
+                  "Default 30" },
     [OPT_BOUNDS] = { 0, "bounds", "X,Y,Z,X,Y,Z",
                      "two corners of a box of the scene; initial points lie in it" },
     [OPT_BLACK] = { 0, "black", NULL, "pictures with alpha lie on black, not white" },
@@ -225,6 +230,21 @@ static int take_number(int option, const char *value, int low, int high, int *to
     return TED4_REQUEST_GO;
 }
 
+/* --fps: a number, or a fraction of two. */
+static int take_rate(const char *value, double *rate)
+{
+    char *end;
+    uint32_t num, den;
+
+    *rate = strtod(value, &end);
+    if (*end == '/')
+        *rate /= strtod(end + 1, &end);
+    return strspn(value, "0123456789./") == strlen(value) && *end == '\0' &&
+                   ted4_frame_rate(*rate, &num, &den) == 0
+               ? TED4_REQUEST_GO
+               : bad_value(OPT_FPS, value, "a number above 0, as 6, 23.976 or 30000/1001");
+}
+
 static const char BOX[] = "X,Y,Z,X,Y,Z: two corners that differ in every coordinate";
 
 /* --bounds: two opposite corners of a box. */
@@ -352,6 +372,7 @@ static int take(ted4_request *r, pending *p, int option, const char *value)
     case OPT_CONTRACT: r->json = r->quiet = 1; break;
     case OPT_DOWNSCALE: return take_number(option, value, 1, MAX_DOWNSCALE, &r->downscale);
     case OPT_MAX_FRAMES: return take_number(option, value, 1, MAX_MAX_FRAMES, &r->max_frames);
+    case OPT_FPS: return take_rate(value, &r->rate);
     case OPT_CACHE: return take_number(option, value, 0, MAX_CACHE, &r->cache_mib);
     case OPT_EVERY: return take_number(option, value, 0, MAX_EVERY, &r->checkpoint_every);
     case OPT_THREADS: return take_number(option, value, 0, TED4_MAX_THREADS, &r->threads);

@@ -20,6 +20,7 @@ typedef struct {
     size_t n_hold_out;
     const char *title, *author, *licence; /* texts for META, borrowed from argv; NULL: none */
     int cameras, thumbnail;               /* 1: write the chunk CAMS or THMB */
+    double rate;                          /* --fps; 0: not given */
     const char *transcode;                /* the file to write again, borrowed; NULL: train */
     size_t target_size;                   /* --target-size in bytes; 0: not given */
     ted4_scatter_options bounds;          /* --bounds; the caller sets the seed */

@@ -26,6 +26,18 @@ export XDG_CACHE_HOME
 check check_json "$out/json" '{"error":null,"layout":"D-NeRF","train":20,"test":4,"cameras":6,' \
     '"frames":4,"sizes":[[32,24],[32,24]],' '"rate":'
 expect file_rate 0 '(the file will say ' "$enc" "$out/scene" --check
+
+# --fps: of a scene that does not say it.
+expect fps 0 'rate        23.976 frames/s' "$enc" "$out/scene" --check --fps 24000/1001
+for bad_rate in x 6x -6 0 0/0 1/ nan 2e7 1e-9; do
+    expect "fps_$bad_rate" 3 "--fps: bad value $bad_rate" "$enc" "$out/scene" --check --fps $bad_rate
+done
+mkdir "$out/timed"
+cp -R "$out/scene/." "$out/timed"
+sed -i '1s/{/{"fps": 25, /' "$out/timed/transforms_train.json"
+expect fps_same 0 'rate        25 frames/s' "$enc" "$out/timed" --check --fps 25
+expect fps_other 3 '--fps: the scene states 25 frames per second, not 24' \
+    "$enc" "$out/timed" --check --fps 24
 expect check_json_missing 3 "$out/none: no such folder" "$enc" "$out/none" --check --json
 "$enc" "$out/none" --check --json 2>/dev/null >"$out/json"
 check check_json_error "$out/json" "{\"error\":\"$out/none: no such folder"
