@@ -30,7 +30,8 @@ expect file_rate 0 '(the file will say ' "$enc" "$out/scene" --check
 # --fps: of a scene that does not say it.
 expect fps 0 'rate        23.976 frames/s' "$enc" "$out/scene" --check --fps 24000/1001
 for bad_rate in x 6x -6 0 0/0 1/ nan 2e7 1e-9; do
-    expect "fps_$bad_rate" 3 "--fps: bad value $bad_rate" "$enc" "$out/scene" --check --fps $bad_rate
+    expect "fps_$bad_rate" 3 "--fps: bad value $bad_rate" \
+        "$enc" "$out/scene" --check --fps $bad_rate
 done
 mkdir "$out/timed"
 cp -R "$out/scene/." "$out/timed"
