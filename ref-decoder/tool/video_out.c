@@ -16,8 +16,10 @@
 /* Exit status of a child process that could not become ffmpeg. */
 enum { NO_FFMPEG = 127 };
 
-/* Players want even sizes and colours at half the resolution. */
-static const char FILTER[] = "pad=ceil(iw/2)*2:ceil(ih/2)*2,format=yuv420p";
+/* Players want even sizes and colours at half the resolution. ffmpeg converts colours by BT.601
+ * unless told otherwise, and players guess BT.709 for videos of 720 lines or more. */
+static const char FILTER[] =
+    "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709,format=yuv420p";
 
 /* Runs in the child process and never returns. */
 static void become_ffmpeg(const char *size, const char *rate, const char *to, int pictures,
@@ -27,9 +29,10 @@ static void become_ffmpeg(const char *size, const char *rate, const char *to, in
 
     if (none >= 0 && dup2(pictures, 0) >= 0 && dup2(none, 1) >= 0 && dup2(messages, 2) >= 0)
         execlp("ffmpeg", "ffmpeg", "-hide_banner", "-v", "repeat+error", "-f", "rawvideo",
-               "-pix_fmt", "rgb24", "-s", size, "-r", rate, "-i", "pipe:0", "-vf", FILTER, "-flags",
-               "+bitexact", "-fflags", "+bitexact", "-movflags", "+faststart", "-f", "mp4", "-y",
-               to, (char *)NULL);
+               "-pix_fmt", "rgb24", "-s", size, "-r", rate, "-i", "pipe:0", "-vf", FILTER,
+               "-color_range", "tv", "-colorspace", "bt709", "-color_primaries", "bt709",
+               "-color_trc", "iec61966-2-1", "-flags", "+bitexact", "-fflags", "+bitexact",
+               "-movflags", "+faststart", "-f", "mp4", "-y", to, (char *)NULL);
     _exit(NO_FFMPEG);
 }
 

@@ -34,6 +34,8 @@ PATH=$out/bin:$PATH
 "$dec" "$vector" --render "$out/a.mp4" --camera "$out/two.json"
 equal complete "$(cat "$out/a.mp4")" video
 check words "$out/words" "-f rawvideo -pix_fmt rgb24 -s 5x3 -r " " -i pipe:0" \
+    "-vf pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709,format=yuv420p" \
+    "-color_range tv -colorspace bt709 -color_primaries bt709 -color_trc iec61966-2-1" \
     "-f mp4 -y file:$out/a.mp4."
 "$dec" "$vector" --render "$out/p%d.png" --camera "$out/two.json" -q
 equal all_pictures "$(wc -c <"$out/pictures" | tr -d ' ')" 90
