@@ -5,10 +5,20 @@
 import { PackedSplats, setPackedSplat } from "@sparkjsdev/spark";
 import { widening } from "./pixel.js";
 
-// Options of a SparkRenderer that draws as annex I does; pixel: the width of a pixel (pixel.js).
+const LEAST_ALPHA = 1 / 255; // I.3
+// Standard deviations at which an opacity of 1 falls to it.
+const REACH = Math.sqrt(-2 * Math.log(LEAST_ALPHA));
+const BOUNDLESS = 1e6; // pixels
+
+// Options of a SparkRenderer that draws as annex I does; pixel: the width of a pixel (pixel.js). By
+// itself, Spark cuts Gaussians off at 2.8 standard deviations, and shrinks what is larger than 512
+// pixels.
 export function annexI(pixel = 1) {
   const { learnt, square } = widening(pixel);
-  return { preBlurAmount: learnt, blurAmount: square, sortRadial: false, minAlpha: 1 / 255 };
+  return {
+    preBlurAmount: learnt, blurAmount: square, sortRadial: false, minAlpha: LEAST_ALPHA,
+    maxStdDev: REACH, maxPixelRadius: BOUNDLESS,
+  };
 }
 
 // For n Gaussians: the splats of a SplatMesh, { packedSplats }.

@@ -3,6 +3,7 @@
 import assert from "node:assert/strict";
 import { basename, dirname, join } from "node:path";
 import { after, before, test } from "node:test";
+import { lookingAt } from "../page/camera.js";
 import { Browser } from "./browser.mjs";
 import { CAMERA, PLAYER, rendered, SCENE, withPixel } from "./fixture.mjs";
 import { psnr } from "./pictures.mjs";
@@ -49,6 +50,13 @@ test("PlayCanvas and Spark: wide pixels", async (t) => {
   const camera = withPixel(2);
   assert.ok((await shown(t, "playcanvas", { camera })).least >= 40);
   assert.ok((await shown(t, "spark", { camera })).least >= 30);
+});
+
+// Some Gaussians are behind the camera, beside it, or larger than the picture.
+test("PlayCanvas and Spark: amid the Gaussians, in a small window and a large one", async (t) => {
+  const amid = (lens) => lookingAt(lens, [-0.1, -0.4, 0.4], [0, 0, 0.3], [0, 0, 1]);
+  assert.ok((await shown(t, "playcanvas", { camera: amid(CAMERA) })).least >= 40);
+  assert.ok((await shown(t, "spark", { camera: amid(withPixel(1 / 8)) })).least >= 30);
 });
 
 test("SuperSplat: a FrameSource", async (t) => {

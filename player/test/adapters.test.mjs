@@ -4,13 +4,15 @@ import assert from "node:assert/strict";
 import { register } from "node:module";
 import { test } from "node:test";
 
-const STUB = "export class GSplatData {} export class Quat {} export class Vec3 {}";
+const STUB = "export class GSplatData {} export class Quat {} export class Vec3 {} " +
+  "export const SHADERLANGUAGE_GLSL = 'glsl', ShaderChunks = null;";
 register("data:text/javascript," + encodeURIComponent(`
   export async function resolve(name, context, next) {
     return name !== "playcanvas" ? next(name, context)
       : { url: "data:text/javascript," + encodeURIComponent(${JSON.stringify(STUB)}),
         shortCircuit: true };
   }`));
+const { drawAsAnnexI } = await import("../adapters/playcanvas-kernel.js");
 const { FrameSource } = await import("../adapters/supersplat.js");
 
 // A promise that is rejected, and that nobody looks at, fails the test that runs.
@@ -22,4 +24,8 @@ test("a source may be destroyed after its client, whose scenes are gone by then"
 
 test("a source of a scene without close() may be destroyed", () => {
   new FrameSource({ info: { frames: 1 } }, () => null).destroy();
+});
+
+test("shaders of WebGPU, which stay as they are, are refused", () => {
+  assert.throws(() => drawAsAnnexI({ isWebGPU: true }), /WebGPU/);
 });
