@@ -6,11 +6,14 @@ import { GSplatData, Quat, Vec3 } from "playcanvas";
 
 const SH_C0 = 0.28209479177387814; // the constant of spherical harmonics of degree 0
 const LEAST = 1e-6; // opacities are kept so far from 0 and 1, that their logarithms are finite
+const LEAST_SCALE = 2 ** -126; // for the same reason, as in .ply files of ted4dec
 
 const logit = (p) => {
   const inside = Math.min(Math.max(p, LEAST), 1 - LEAST);
   return Math.log(inside / (1 - inside));
 };
+
+const logarithm = (s) => Math.log(Math.max(s, LEAST_SCALE));
 
 // The properties of a PLY file of 3D Gaussian splatting.
 function propertiesOf({ mean, scale, rotation, opacity, colour }) {
@@ -18,7 +21,7 @@ function propertiesOf({ mean, scale, rotation, opacity, colour }) {
     arrays.map((array, i) => [prefix + names[i], array.map(map)]);
   const same = (v) => v;
   return [
-    ...all("", mean, same, "xyz"), ...all("scale_", scale, Math.log, "012"),
+    ...all("", mean, same, "xyz"), ...all("scale_", scale, logarithm, "012"),
     ...all("rot_", rotation, same, "0123"), ["opacity", opacity.map(logit)],
     ...all("f_dc_", colour, (v) => (v - 0.5) / SH_C0, "012"),
   ];
