@@ -289,15 +289,17 @@ static int scatter(const encoder *e, ted4_dataset *d, ted4_message *m)
     return 0;
 }
 
-/* Takes the rate of --fps, unless the scene states another one. 0: not given. */
-static int set_rate(ted4_dataset *d, double rate, ted4_message *m)
+/* Refuses the rate of --fps if the scene states another one. --check shows it; otherwise the scene
+ * stays without one until the file is written, so that checkpoints go with every rate. */
+static int set_rate(ted4_dataset *d, const ted4_request *r, ted4_message *m)
 {
-    if (rate > 0 && d->rate > 0 && rate != d->rate) {
+    if (r->rate > 0 && d->rate > 0 && r->rate != d->rate) {
         snprintf(m->text, sizeof m->text,
-                 "--fps: the scene states %.9g frames per second, not %.9g", d->rate, rate);
+                 "--fps: the scene states %.9g frames per second, not %.9g", d->rate, r->rate);
         return -1;
     }
-    d->rate = rate > 0 ? rate : d->rate;
+    if (r->rate > 0 && r->check)
+        d->rate = r->rate;
     return 0;
 }
 
@@ -325,7 +327,7 @@ static int work(const encoder *e)
 
     const int unread = ted4_dataset_load(&d, r->scene, &wanted, &m) != 0;
 
-    if (unread || set_rate(&d, r->rate, &m) != 0) {
+    if (unread || set_rate(&d, r, &m) != 0) {
         if (!unread)
             ted4_dataset_free(&d);
         if (r->check)

@@ -8,6 +8,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "data/frame_rate.h"
 #include "describe_trained.h"
 #include "stop.h"
 #include "tool/clock.h"
@@ -345,6 +346,8 @@ int ted4_training_code(ted4_training *t, ted4_coded *c)
     }
     for (int y = 0; y < TED4_TYPES; y++)
         c->verified.estimated_bits += bits[y];
+    if (t->request->rate > 0)
+        ted4_frame_rate(t->request->rate, &scene->head.rate_num, &scene->head.rate_den);
     char *text = t->request->search_report ? ted4_search_report(tr) : NULL;
 
     bad = t->request->search_report && text == NULL;

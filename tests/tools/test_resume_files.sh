@@ -7,7 +7,7 @@
 set -u
 export LC_ALL=C
 . tests/support/speak.sh
-need resume_files ted4enc ted4scene
+need resume_files ted4enc ted4info ted4scene
 scene=$out/scene
 small="--preset draft --iterations 30,20 --capacity fixed --seed 1 -j 1 --set init_anchors=150
     --set max_anchors=260 --set offsets=4 --set feature=8 --set phi=4 --set bank_dim=8
@@ -28,6 +28,9 @@ expect log_resumed 3 'l: there, but not a log' enc -o a.ted4 --log l --checkpoin
 expect forced 0 'a.ted4: ' enc -o a.ted4 --checkpoint c --log l -f
 expect resumed 0 'c: going on from step 50' enc -o b.ted4 --checkpoint c --log l --resume
 expect resumed_forced 0 'c: going on from step 50' enc -o b.ted4 --checkpoint c --log l --resume -f
+# A training of one frame rate gives files of others.
+expect rate_resumed 0 'c: going on from step 50' enc -o f.ted4 --checkpoint c --resume --fps 6.5
+expect rate_written 0 'frames      4 at 6.5 per second' "$TED4_BUILD/ted4info" f.ted4
 expect device 0 'd.ted4: ' enc -o d.ted4 --log /dev/null
 
 # One name for two outputs.
