@@ -1,6 +1,6 @@
 // playcanvas.js - the Gaussians of a time as a GSplatContainer of PlayCanvas: every array of a
 // query is a texture of its own, in binary32 as the decoder gives it. The axes of the world stay
-// right, down, forward; turn the entity if y is up.
+// those of the scene; turn the entity so that its up direction is that of the viewer.
 // SPDX-License-Identifier: BSD-2-Clause
 import { BoundingBox, GSplatContainer, GSplatFormat, PIXELFORMAT_R32F, Vec3 } from "playcanvas";
 

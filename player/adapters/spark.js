@@ -1,6 +1,6 @@
 // spark.js - the Gaussians of a time as PackedSplats of Spark: 16 bytes each, with centres in
-// binary16 and the rest in 8 bits. The axes of the world stay right, down, forward; turn the mesh
-// if y is up.
+// binary16 and the rest in 8 bits. The axes of the world stay those of the scene; turn the mesh
+// so that its up direction is that of the viewer.
 // SPDX-License-Identifier: BSD-2-Clause
 import { PackedSplats, setPackedSplat } from "@sparkjsdev/spark";
 import { widening } from "./pixel.js";

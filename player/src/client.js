@@ -1,7 +1,7 @@
 // client.js - decodes in a worker (worker.js). Every call gives a promise; calls of one client are
 // answered in order. When the worker fails or is terminated, all calls are rejected.
 // SPDX-License-Identifier: BSD-2-Clause
-import { Ted4Error } from "./decoder.js";
+import { Ted4Error, bytesOf } from "./decoder.js";
 import { timeOfFrame } from "./times.js";
 
 function restored(e) {
@@ -17,8 +17,7 @@ function absolute(address) {
 
 // A buffer to be transferred: of an ArrayBuffer itself, of a view a copy of its bytes.
 function owned(bytes) {
-  if (bytes instanceof ArrayBuffer) return bytes;
-  return new Uint8Array(bytes.buffer, bytes.byteOffset, bytes.byteLength).slice().buffer;
+  return bytes instanceof ArrayBuffer ? bytes : bytesOf(bytes).slice().buffer;
 }
 
 export class Ted4Client {

@@ -35,6 +35,14 @@ function isTerm(n) {
   return Number.isInteger(n) && n >= 0 && n < 2 ** 32;
 }
 
+// The bytes of a file: an ArrayBuffer, or any view of one.
+export function bytesOf(file) {
+  if (file instanceof ArrayBuffer) return new Uint8Array(file);
+  if (ArrayBuffer.isView(file))
+    return new Uint8Array(file.buffer, file.byteOffset, file.byteLength);
+  throw new TypeError(`${typeof file === "string" ? file : typeof file}, expected bytes`);
+}
+
 function hex(bytes) {
   return Array.from(bytes, (b) => b.toString(16).padStart(2, "0")).join("");
 }
@@ -64,7 +72,8 @@ export class Decoder {
   }
 
   // Strict decoding of a whole file. options: maxBytes of memory and maxWork (spec 13.4) that the
-  // file may ask for; budget: true also attributes its bytes to elements. Throws Ted4Error.
+  // file may ask for; budget: true also attributes its bytes to elements. Throws Ted4Error, or
+  // TypeError for a path or an address in place of bytes.
   open(bytes, options = {}) {
     const scene = new Scene(new WebAssembly.Instance(this.#module, {}).exports, bytes, options);
     scene.decode();
@@ -89,7 +98,7 @@ export class Scene {
 
   constructor(wasm, bytes, options) {
     this.#wasm = wasm;
-    this.#bytes = bytes instanceof ArrayBuffer ? new Uint8Array(bytes) : bytes;
+    this.#bytes = bytesOf(bytes);
     this.#options = { maxBytes: DEFAULT_MAX_BYTES, maxWork: 0, budget: false, ...options };
     for (const name of ["maxBytes", "maxWork"])
       if (!(this.#options[name] >= 0))

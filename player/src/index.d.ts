@@ -46,7 +46,7 @@ export interface SceneInfo {
   hash: string;
 }
 
-/** Structure of arrays; world axes are right, down, forward; scales are standard deviations;
+/** Structure of arrays; world axes are those of the scene; scales are standard deviations;
  *  rotations are w, x, y, z; colours are display-referred sRGB from 0 to 1. */
 export interface Gaussians {
   n: number;

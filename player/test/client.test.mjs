@@ -89,6 +89,10 @@ test("bytes of a Buffer are copied, and those of an ArrayBuffer are gone afterwa
     assert.equal(buffer.byteLength, 0);
   }));
 
+test("an address in place of the bytes of a file is refused", () => withClient(async (client) => {
+  await assert.rejects(client.open("scene.ted4"), { name: "TypeError" });
+}));
+
 test("before load, and after close, the error says so", async () => {
   const early = new Ted4Client(new BrowserWorker());
   await assert.rejects(early.open(copy()), { message: "no decoder: call load() before open()" });

@@ -69,6 +69,15 @@ test("a query that is none is refused, and never taken for another one", () => {
     assert.throws(() => decoder.open(contents[0].bytes, options), RangeError);
 });
 
+test("a file is bytes; a path, an address or a number is refused as the caller's mistake", () => {
+  for (const file of ["scene.ted4", new URL("file:///scene.ted4"), 5, null, undefined, [1, 2]])
+    for (const call of ["open", "salvage"])
+      assert.throws(() => decoder[call](file), { name: "TypeError", message: /, expected bytes$/ });
+  const { buffer, byteOffset, byteLength } = Uint8Array.from(contents[0].bytes);
+  const { hash } = decoder.open(contents[0].bytes).info;
+  assert.equal(decoder.open(new DataView(buffer, byteOffset, byteLength)).info.hash, hash);
+});
+
 test("a broken file is refused with identifier and offset", () => {
   const bytes = Uint8Array.from(contents[0].bytes);
   bytes[100] ^= 1;
