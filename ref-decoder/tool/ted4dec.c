@@ -72,9 +72,8 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
                         "spherical harmonics that stand for view-dependent colours, 0 to 3. "
                         "Default 1, if colours depend on the view" },
     [OPT_UP] = { 0, "up", "AXIS",
-                 "turn what -o writes so that this axis of the scene is up in viewers: x, y, z, "
-                 "-x, "
-                 "-y, -z, or auto: as the file says (ted4info shows it)" },
+                 "turn what -o writes so that this axis of the scene is up in viewers, and --orbit "
+                 "around it: x, y, z, -x, -y, -z, or auto: as the file says (ted4info shows it)" },
     [OPT_WIDEN] = { 0, "widen", NULL,
                     "make what -o writes as wide as training saw it, for viewers that draw larger "
                     "pictures than those of training; the file has to hold its cameras" },
