@@ -4,31 +4,46 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <xxhash.h>
 
+#include "base/bytes.h"
 #include "chunks.h"
 #include "turn.h"
 
-void ted4_file_up(const uint8_t *file, size_t size, float up[3])
+/* Reads the next cameras from *at on, and moves *at behind them. Returns 1, or 0 at the end of the
+ * file. A damaged chunk, as a file may have of which --lenient recovered a part, is left out. */
+static int next_cameras(const uint8_t *file, size_t size, size_t *at, ted4_cams *c)
 {
     ted4_chunk_view chunk;
+
+    while (ted4_chunks_next(file, size, at, &chunk)) {
+        const size_t hashed = TED4_CHUNK_HEAD + chunk.size;
+
+        if (strcmp(chunk.type, "CAMS") == 0 &&
+            XXH3_64bits(file + chunk.at, hashed) == ted4_load64(file + chunk.at + hashed) &&
+            ted4_cams_read(chunk.payload, chunk.size, c) == 0)
+            return 1;
+    }
+    return 0;
+}
+
+void ted4_file_up(const uint8_t *file, size_t size, float up[3])
+{
     ted4_cams c;
 
     memset(up, 0, 3 * sizeof *up);
-    for (size_t at = TED4_FILE_HEADER; ted4_chunks_next(file, size, &at, &chunk);)
-        if (strcmp(chunk.type, "CAMS") == 0 && ted4_cams_read(chunk.payload, chunk.size, &c) == 0 &&
-            ted4_has_direction(c.up))
+    for (size_t at = TED4_FILE_HEADER; next_cameras(file, size, &at, &c);)
+        if (ted4_has_direction(c.up))
             memcpy(up, c.up, sizeof c.up);
 }
 
 /* The cameras of a kind that count: n is 0 if there are none. */
 static ted4_cams find_cameras(const uint8_t *file, size_t size, ted4_cams_kind kind)
 {
-    ted4_chunk_view chunk;
     ted4_cams c, found = { .n = 0 };
 
-    for (size_t at = TED4_FILE_HEADER; ted4_chunks_next(file, size, &at, &chunk);)
-        if (strcmp(chunk.type, "CAMS") == 0 && ted4_cams_read(chunk.payload, chunk.size, &c) == 0 &&
-            c.kind == kind && c.n > 0)
+    for (size_t at = TED4_FILE_HEADER; next_cameras(file, size, &at, &c);)
+        if (c.kind == kind && c.n > 0)
             found = c;
     return found;
 }

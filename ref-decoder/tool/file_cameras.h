@@ -10,7 +10,8 @@
 #include "cams.h"
 
 /* Sets up to the up direction that a file's chunks CAMS name last, in scene coordinates; all 0 if
- * none does. file: [size], accepted by a decoder. */
+ * none does. file: [size], accepted by a decoder, or recovered in part: of damaged chunks, nothing
+ * is taken. */
 void ted4_file_up(const uint8_t *file, size_t size, float up[3]);
 
 /* Reads the cameras of a kind into *l, from the last chunk that has them. Those of a path get the

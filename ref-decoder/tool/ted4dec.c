@@ -96,7 +96,8 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
                    "a camera that moves along these ones, while the scene plays once; file: the "
                    "path of FILE.ted4" },
     [OPT_VIEWS] = { 0, "views", "N",
-                    "pictures of --path. Default: as many as the scene has frames" },
+                    "pictures of --path. Default: as many as the scene has frames; of a scene of "
+                    "one time, 30 from camera to camera" },
     [OPT_HASH] = { 0, "hash", NULL,
                    "print the hash of the decoded integers and, for --frames or --time, of these "
                    "queries" },

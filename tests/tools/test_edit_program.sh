@@ -77,6 +77,19 @@ equal last_counts "$(count doubled)" 2
 edit "$out/doubled.ted4" -o "$out/up.ted4" --up 0,-1,0
 equal last_counts_with_up "$(count up) $(info up | grep -c 'CAMS.*2 cameras, up 0 -1 0$')" "2 1"
 
+# What --lenient recovers of a file does not come from a chunk of cameras that is damaged.
+python3 - "$out/all.ted4" "$out/spoilt.ted4" <<'END'
+import sys
+file = bytearray(open(sys.argv[1], "rb").read())
+file[file.index(b"CAMS") + 40] ^= 1
+open(sys.argv[2], "wb").write(file)
+END
+spoilt() { expect "$@"; rm -f "$out/spoilt.ply"; }
+set -- "$TED4_BUILD/ted4dec" "$out/spoilt.ted4" --lenient -o "$out/spoilt.ply" --time 0
+spoilt spoilt_widen 3 '--widen needs the cameras that took the pictures' "$@" --widen
+spoilt spoilt_auto 3 '--up auto: the file does not say which way is up' "$@" --up auto
+spoilt spoilt_up 2 'incomplete: tiles 0 to' "$@" --up y
+
 # One clear line each, and no output.
 refuse() { expect "$1" 3 "$2" "$TED4_BUILD/ted4edit" "$out/plain.ted4" -o "$out/no.ted4" $3 "$4"
     [ -e "$out/no.ted4" ] && fail "$1" 'an output'; rm -f "$out/no.ted4"; }
