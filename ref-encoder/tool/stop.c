@@ -50,7 +50,7 @@ static void take(int signal)
         change(signals[i], SIG_DFL);
     if (first)
         say(keeping ? "\nted4enc: stopping after this step; once more ends at once\n"
-                    : "\nted4enc: stopped before training; nothing was written\n");
+                    : "\nted4enc: stopped; nothing was written\n");
     if (at_once) {
         ted4_leftovers_remove();
         raise(signal);

@@ -180,7 +180,7 @@ static int stop_at_loading(void)
     if (finish(child) != 1000 + SIGINT)
         return 0;
     read_words(text, sizeof text);
-    assert_non_null(strstr(text, "\nted4enc: stopped before training; nothing was written\n"));
+    assert_non_null(strstr(text, "\nted4enc: stopped; nothing was written\n"));
     expect_files("");
     return 1;
 }
