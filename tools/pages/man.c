@@ -255,7 +255,9 @@ void ted4_pages_man(const ted4_command *c, const char *date, FILE *f)
     fputs(".Sh ENVIRONMENT\n.Bl -tag -width Ds\n.It Ev TED4_KERNEL\n"
           "Chooses slower kernels than the best that the machine has:\n"
           ".Cm plain , v1 , v3\nor\n.Cm v4\non x86-64,\n.Cm plain\nor\n.Cm neon\non aarch64.\n"
-          "No byte of any result changes.\n.El\n",
+          "Decoding gives the same bytes with all of them.\n"
+          "Trainings, and drawn pictures at times, differ slightly with\n.Cm plain\nand\n.Cm v1\n"
+          "on x86-64, which have no fused multiply-add.\n.El\n",
           f);
     put_tail(f, tail, TAIL_EXITS);
     put_examples(f, c, tail);
