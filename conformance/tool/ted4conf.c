@@ -132,6 +132,16 @@ static int64_t number(const char *name, const char *text, int64_t low, int64_t h
     return n;
 }
 
+/* Ends the program if the text does not set a variable. */
+static const char *variable(const char *text)
+{
+    const char *const is = strchr(text, '=');
+
+    if (is == NULL || is == text)
+        exit(ted4_arguments_bad("ted4conf", "second", text, "NAME=VALUE"));
+    return text;
+}
+
 static int run(int argc, char **argv)
 {
     static const ted4_command command = {
@@ -159,7 +169,7 @@ static int run(int argc, char **argv)
         case RUN_TIMEOUT: o.timeout = (double)number("timeout", value, 0, 86400); break;
         case RUN_MEMORY: o.memory = (uint64_t)number("memory", value, 0, 1 << 24) << 20; break;
         case RUN_ONCE: o.once = 1; break;
-        case RUN_SECOND: o.second = value; break;
+        case RUN_SECOND: o.second = variable(value); break;
         case RUN_DEMAND: o.demand = 1; break;
         case RUN_LARGE: o.demand = o.large = 1; break;
         case RUN_JSON: o.json = value; break;

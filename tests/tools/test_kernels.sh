@@ -22,6 +22,11 @@ for program in $programs; do
 done
 expect unknown_level_version_ted4conf 3 "ted4conf run: TED4_KERNEL=v9: this machine has plain" \
     env TED4_KERNEL=v9 "$TED4_BUILD/ted4conf" run --version
+expect unknown_level_contract 3 'ted4dec: TED4_KERNEL=v9: this machine has plain' \
+    env TED4_KERNEL=v9 "$TED4_BUILD/ted4dec" --ted4-run $stream --tiers T1
+expect second_no_value 3 'ted4conf: --second: bad value TED4_KERNEL; expected NAME=VALUE' \
+    "$TED4_BUILD/ted4conf" run --decoder "$TED4_BUILD/ted4dec" --second TED4_KERNEL \
+    --list conformance/lists/few.txt
 levels=$(TED4_KERNEL=v9 "$TED4_BUILD/ted4dec" $stream 2>&1 | sed -n 's/.*this machine has //p')
 for level in $levels; do
     expect "named_$level" 0 "(specification 1.0 and draft 1.1), kernels $level" \
