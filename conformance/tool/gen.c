@@ -245,6 +245,7 @@ int conf_gen(const conf_gen_options *o)
     generator g = { .o = o };
     conf_recipes r;
     char path[CONF_PATH];
+    int some = 0;
 
     conf_path(g.output, "%s%s", o->output != NULL ? o->output : o->suite,
               o->output != NULL ? "" : "/vectors");
@@ -255,13 +256,17 @@ int conf_gen(const conf_gen_options *o)
         g.least[level] = json_array();
     g.counts = json_object();
     for (size_t i = 0; i < r.n; i++)
-        if (o->only == NULL || strncmp(r.recipe[i].id, o->only, strlen(o->only)) == 0)
+        if (o->only == NULL || strncmp(r.recipe[i].id, o->only, strlen(o->only)) == 0) {
             make(&g, &r.recipe[i]);
+            some = 1;
+        }
     if (o->only == NULL) {
         put_manifest(&g);
         put_level_lists(&g);
         find_orphans(&g);
     }
+    if (o->only != NULL && !some)
+        conf_die("--only %s: no vector's id begins so", o->only);
     fprintf(stderr, "ted4conf: %zu vectors %s, %zu bytes with descriptors, %zu bad\n", g.n_made,
             o->verify ? "compared" : "made", g.bytes, g.n_bad);
     json_decref(g.manifest);

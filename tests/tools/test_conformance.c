@@ -60,6 +60,8 @@ static void recipes_give_the_published_bytes(void **state)
     (void)state;
     if (conf(last, sizeof last, "gen --verify") != 0)
         fail_msg("%s", last);
+    assert_int_equal(conf(last, sizeof last, "gen --verify --only WRK-smalest"), 3);
+    assert_string_equal(last, "ted4conf: --only WRK-smalest: no vector's id begins so\n");
 }
 
 /* There is no rule without a vector and no vector without a rule, and every value, pair, table
