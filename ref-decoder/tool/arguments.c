@@ -36,25 +36,11 @@ static void make_getopt(const ted4_command *c, struct option *longs, char *lette
     *p = '\0';
 }
 
-int ted4_arguments_kernels(const char *program)
-{
-    const char *name = getenv("TED4_KERNEL");
-    const ted4_level most = ted4_level_of_machine();
-
-    if (name == NULL || ted4_level_named(name) <= most)
-        return 0;
-    fprintf(stderr, "%s: TED4_KERNEL=%s: this machine has", program, name);
-    for (ted4_level level = TED4_LEVEL_PLAIN; level <= most; level++)
-        fprintf(stderr, " %s", ted4_level_name(level));
-    fputc('\n', stderr);
-    return -1;
-}
-
 static int answer(const ted4_command *c, int i)
 {
     if (c->table[i].letter == 'h')
         ted4_arguments_help(c, stdout);
-    else if (c->table[i].letter == 'V' && ted4_arguments_kernels(c->program) != 0)
+    else if (c->table[i].letter == 'V' && ted4_cli_kernels(c->program) != 0)
         return TED4_ARGUMENTS_BAD;
     else if (c->table[i].letter == 'V')
         printf("%s " TED4_VERSION " (specification " TED4_SPEC_VERSION "), kernels %s\n",
@@ -90,7 +76,7 @@ int ted4_arguments_next(const ted4_command *c, int argc, char **argv, const char
 
     *value = optarg;
     if (found == -1)
-        return ted4_arguments_kernels(c->program) == 0 ? TED4_ARGUMENTS_END : TED4_ARGUMENTS_BAD;
+        return ted4_cli_kernels(c->program) == 0 ? TED4_ARGUMENTS_END : TED4_ARGUMENTS_BAD;
     if (found >= FIRST_LONG)
         return answer(c, found - FIRST_LONG);
     for (int i = 0; i < c->n; i++)

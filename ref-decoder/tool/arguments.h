@@ -46,9 +46,6 @@ enum { TED4_ARGUMENTS_END = -1, TED4_ARGUMENTS_BAD = -2, TED4_ARGUMENTS_DONE = -
  * text cannot be printed, or TED4_KERNEL names kernels that this machine cannot run. */
 int ted4_arguments_next(const ted4_command *c, int argc, char **argv, const char **value);
 void ted4_arguments_help(const ted4_command *c, FILE *f);
-/* Returns 0 if this machine can run the kernels that TED4_KERNEL names, or if it is not set;
- * otherwise prints a message and returns -1. */
-int ted4_arguments_kernels(const char *program);
 
 enum { TED4_HELP_COLUMNS = 80 };
 /* Prints the words of text, which line breaks and spaces separate, in lines of at most

@@ -6,8 +6,10 @@
 #include <jansson.h>
 #include <signal.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "base/level.h"
 #include "json_string.h"
 
 void ted4_cli_begin(void)
@@ -23,6 +25,20 @@ static int reason;
 void ted4_cli_lost(int why)
 {
     reason = why;
+}
+
+int ted4_cli_kernels(const char *program)
+{
+    const char *name = getenv("TED4_KERNEL");
+    const ted4_level most = ted4_level_of_machine();
+
+    if (name == NULL || ted4_level_named(name) <= most)
+        return 0;
+    fprintf(stderr, "%s: TED4_KERNEL=%s: this machine has", program, name);
+    for (ted4_level level = TED4_LEVEL_PLAIN; level <= most; level++)
+        fprintf(stderr, " %s", ted4_level_name(level));
+    fputc('\n', stderr);
+    return -1;
 }
 
 int ted4_cli_end(const char *program, int code)

@@ -21,6 +21,9 @@ void ted4_cli_begin(void);
 /* Called where standard output takes no more, with the errno of that, which is gone by the end:
  * ted4_cli_end says so. */
 void ted4_cli_lost(int why);
+/* Returns 0 if this machine can run the kernels that TED4_KERNEL names, or if it is not set;
+ * otherwise prints a message and returns -1. */
+int ted4_cli_kernels(const char *program);
 /* Called when everything has been printed. Returns code; or TED4_EXIT_TOOL, after a message, if
  * standard output could not take it all. */
 int ted4_cli_end(const char *program, int code);

@@ -6,7 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include "arguments.h"
 #include "base/bytes.h"
 #include "cli.h"
 #include "json_file.h"
@@ -366,7 +365,7 @@ int ted4_contract(int argc, char **argv)
     request r;
 
     ted4_cli_begin();
-    if (ted4_arguments_kernels("ted4dec") != 0)
+    if (ted4_cli_kernels("ted4dec") != 0)
         return TED4_EXIT_TOOL;
     if (argc == 2 && strcmp(argv[1], "--ted4-capabilities") == 0)
         return print(capabilities());

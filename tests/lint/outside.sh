@@ -5,7 +5,7 @@
 export LC_ALL=C
 allow="
 ref-decoder/base/level.c       getenv
-ref-decoder/tool/arguments.c   getenv
+ref-decoder/tool/cli.c         getenv
 ref-decoder/tool/video_out.c   fork execlp
 ref-encoder/data/video.c       getenv fork execlp
 tools/scene/ray_set.c          fork execlp
