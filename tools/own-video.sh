@@ -21,7 +21,8 @@ for p in ffmpeg ffprobe colmap; do command -v $p >/dev/null ||
     die "there is no program $p (Debian: apt-get install --no-install-recommends ffmpeg colmap)";
     done
 for v; do [ -f "$v" ] || die "$v: no such file"; done
-case ${FPS:=6} in *[!0-9./]*) die "FPS=$FPS: expected frames per second, as 6 or 2.5" ;; esac
+case ${FPS:=6} in *[!0-9./]*) false ;; *[1-9]*) ;; *) false ;; esac ||
+    die "FPS=$FPS: expected frames per second, as 6 or 2.5"
 [ -z "$(ls -A "$out" 2>/dev/null)" ] || die "$out: not empty"
 work=$out/poses                             # COLMAP's pictures and database
 [ $# -gt 1 ] || work=$out

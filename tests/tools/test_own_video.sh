@@ -85,6 +85,8 @@ for p in ffmpeg ffprobe colmap; do command -v $p >/dev/null ||
     { skip own_video "there is no $p"; exit $bad; }; done
 refuse no_file 3 "$out/absent.mp4: no such file" sh tools/own-video.sh "$out/s" "$out/absent.mp4"
 refuse not_empty 3 "$out/full: not empty" sh tools/own-video.sh "$out/full" "$out/text.mp4"
+refuse no_rate 3 "FPS=0: expected frames per second" env FPS=0 sh tools/own-video.sh "$out/s" \
+    "$out/text.mp4"
 refuse rate 3 "FPS=fast: expected frames per second" env FPS=fast sh tools/own-video.sh "$out/s" \
     "$out/text.mp4"
 if [ -e "$out/s" ]; then fail nothing_made "$out/s"; else ok nothing_made; fi
