@@ -77,5 +77,5 @@ if [ $one = 0 ]; then
         "$work/sparse/images.txt" >"$out/cams.json" || die "$out/cams.json: cannot be written"
 fi
 rm -rf "$work/models" "$work/db"
-[ $one = 0 ] || echo "own-video.sh: its frame rate, which it cannot state, is ted4enc --fps $FPS"
+[ $one = 0 ] || echo "own-video.sh: $out does not state its frame rate: use ted4enc --fps $FPS"
 echo "own-video.sh: $out is a SCENE: ted4enc --check $out"

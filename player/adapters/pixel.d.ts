@@ -1,9 +1,9 @@
 // Types of adapters/pixel.js. SPDX-License-Identifier: BSD-2-Clause
 
-/** The width of a pixel, in pixels of the pictures of which the scene was learnt (annex I.4). fx:
- *  the focal length of the view, in pixels; cameras: those that took the pictures. 1 if there are
- *  none. */
-export function pixelWidth(fx: number, cameras: { fx: number }[]): number;
+/** The focal length of the pictures of which the scene was learnt, in their pixels (annex I.4): the
+ *  median of the cameras that took them; null if there are none. A pixel drawn with the focal
+ *  length fx has the width trainedFocal(cameras) / fx. */
+export function trainedFocal(cameras: { fx: number }[]): number | null;
 
 /** What a renderer adds to both variances of a Gaussian in the image, in square pixels: learnt at
  *  the same opacity, then square, while opacity falls. pixel: the width, above 0. */

@@ -5,11 +5,12 @@
 const LEARNT = 0.3; // what training adds to both variances, square pixels (I.2)
 const SQUARE = 1 / 12; // variance of a pixel
 
-// The width of a pixel drawn with the focal length fx, pixels; cameras: those that took the
-// pictures (camerasOf(chunks).cameras), of which the middle one counts. 1 if there are none.
-export function pixelWidth(fx, cameras) {
-  const learnt = cameras.map((camera) => camera.fx).sort((a, b) => a - b);
-  return learnt.length > 0 ? learnt[learnt.length >> 1] / fx : 1;
+// The focal length of the pictures of which the scene was learnt, in their pixels: the median of
+// the cameras that took them; null if there are none. A pixel that is drawn with the focal length fx
+// is this over fx wide.
+export function trainedFocal(cameras) {
+  const focal = cameras.map(({ fx }) => fx).sort((a, b) => a - b);
+  return focal.length > 0 ? focal[focal.length >> 1] : null;
 }
 
 // For pixels of this width, in square pixels as they are drawn: what to add to both variances at

@@ -8,5 +8,5 @@ import type { GraphicsDevice } from "playcanvas";
 export function drawAsAnnexI(device: GraphicsDevice): void;
 
 /** The width of a pixel from the next frame on, in pixels of the pictures of which the scene was
- *  learnt (annex I.4; pixelWidth of pixel.js): above 0, and 1 before the first call. */
+ *  learnt (annex I.4; trainedFocal of pixel.js): above 0, and 1 before the first call. */
 export function setPixel(device: GraphicsDevice, pixel: number): void;

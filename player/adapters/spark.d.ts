@@ -3,7 +3,7 @@ import type { PackedSplats } from "@sparkjsdev/spark";
 import type { Gaussians } from "../src/index.js";
 
 /** Options of a SparkRenderer that draws as annex I does. pixel: the width of a pixel, in pixels of
- *  the pictures of which the scene was learnt (pixelWidth of pixel.js); 1 if it is left out. */
+ *  the pictures of which the scene was learnt (trainedFocal of pixel.js); 1 if it is left out. */
 export function annexI(pixel?: number):
   { preBlurAmount: number; blurAmount: number; sortRadial: boolean; minAlpha: number;
     maxStdDev: number; maxPixelRadius: number };

@@ -1,7 +1,7 @@
 // player.js - a file on the screen: decodes and evaluates in workers, and keeps the picture at the
 // time and the camera that are wanted now. It knows nothing of the page around its canvas.
 // SPDX-License-Identifier: BSD-2-Clause
-import { pixelWidth } from "../adapters/pixel.js";
+import { trainedFocal } from "../adapters/pixel.js";
 import { timeOfFragment } from "../src/times.js";
 import { centreOf, fitted } from "./camera.js";
 import { bytesByType, camerasOf, chunksOf, metaOf } from "./chunks.js";
@@ -32,6 +32,7 @@ export class Player {
   #pending = new Map(); // what evaluations under way are for, by their numbers, in order
   #asked = 0; // the number of the last evaluation
   #pose = null; // the camera that the view was given
+  #focal = null; // of training (trainedFocal)
   #followed = null; // while the path is followed: { camera, time } of it
   #last = 0;
   #failed;
@@ -99,6 +100,7 @@ export class Player {
     this.#pending.clear();
     this.#shown = this.#followed = this.#gaussians = this.#unmeasured = null;
     this.statistics.firstPicture = 0;
+    this.#focal = trainedFocal(cameras.cameras);
     this.file = {
       ...asked, bytes, info: scene.info, chunks: bytesByType(chunks), meta: metaOf(chunks),
       cameras, milliseconds: scene.milliseconds,
@@ -199,9 +201,9 @@ export class Player {
     if (before?.camera === camera && before.width === width && before.height === height) return;
     if (before?.width !== width || before.height !== height) this.#view.resize(width, height);
     this.#pose = { camera, width, height };
-    const shown = fitted(camera, width, height), { cameras } = this.file.cameras;
+    const shown = fitted(camera, width, height);
     this.#view.setCamera(shown, NEAREST * 2 ** this.file.info.exponent,
-      pixelWidth(shown.fx, cameras));
+      this.#focal === null ? 1 : this.#focal / shown.fx);
   }
 
   // What the Gaussians depend on: the time, and the camera's place if colours depend on it.

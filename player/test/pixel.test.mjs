@@ -2,14 +2,14 @@
 // SPDX-License-Identifier: BSD-2-Clause
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { pixelWidth, widening } from "../adapters/pixel.js";
+import { trainedFocal, widening } from "../adapters/pixel.js";
 
-test("the middle one of a file's cameras tells the width of a pixel", () => {
+test("the middle one of a file's cameras has the focal length of training", () => {
   const cameras = (...all) => all.map((fx) => ({ fx }));
-  assert.equal(pixelWidth(300, []), 1);
-  assert.equal(pixelWidth(300, cameras(600)), 2);
-  assert.equal(pixelWidth(300, cameras(900, 30, 150)), 0.5);
-  assert.equal(pixelWidth(300, cameras(600, 150)), 2); // the larger one in the middle
+  assert.equal(trainedFocal([]), null);
+  assert.equal(trainedFocal(cameras(600)), 600);
+  assert.equal(trainedFocal(cameras(900, 30, 150)), 150);
+  assert.equal(trainedFocal(cameras(600, 150)), 600); // the larger one in the middle
 });
 
 test("Gaussians are widened as in training, and in wider pixels by the rest of them", () => {

@@ -75,8 +75,9 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
                  "turn what -o writes so that this axis of the scene is up in viewers, and --orbit "
                  "around it: x, y, z, -x, -y, -z, or auto: as the file says (ted4info shows it)" },
     [OPT_WIDEN] = { 0, "widen", NULL,
-                    "make what -o writes as wide as training saw it, for viewers that draw larger "
-                    "pictures than those of training; the file has to hold its cameras" },
+                    "widen the Gaussians of -o by the blur of a training pixel, for viewers that "
+                    "draw larger pictures than those of training; the file has to hold its "
+                    "cameras" },
     [OPT_KEEP_ALL] = { 0, "keep-all", NULL,
                        "also write Gaussians whose opacity is below 1/255. Default where the name "
                        "holds a %d, so that all files of a sequence have the same Gaussians" },

@@ -5,17 +5,15 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* How far a camera sees, in half pictures from the middle (I.2, step 4). */
-static const float EXTENT = 1.3f;
-
-/* Lowers seen[i] to the width of a pixel of v at Gaussian i if v sees it, and away[i] to the width
- * at the same distance in any direction. */
+/* Lowers seen[i] to the width of a pixel of v at Gaussian i if v sees it, that is, as far beside
+ * the picture as I.2, step 4, goes; and away[i] to the width at the same distance in any direction.
+ */
 static void look(const ted4_view *v, float near_z, size_t n, const float *const mean[3],
                  float *restrict seen, float *restrict away)
 {
     const float *const R = v->R, *const t = v->t;
-    const float reach_x = EXTENT * 0.5f * (float)v->width / v->fx,
-                reach_y = EXTENT * 0.5f * (float)v->height / v->fy;
+    const float reach_x = TED4_RASTER_GUARD * 0.5f * (float)v->width / v->fx,
+                reach_y = TED4_RASTER_GUARD * 0.5f * (float)v->height / v->fy;
     const float middle_x = (0.5f * (float)v->width - v->cx) / v->fx,
                 middle_y = (0.5f * (float)v->height - v->cy) / v->fy;
 

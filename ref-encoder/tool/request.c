@@ -87,7 +87,7 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
     [OPT_MAX_FRAMES] = { 0, "max-frames", "N",
                          "only so many times, the first ones (default: all, 300 of Neu3D)" },
     [OPT_FPS] = { 0, "fps", "N",
-                  "frames per second, of a scene that does not say it: 6, 23.976, 30000/1001. "
+                  "frames per second, if the scene does not state them: 6, 23.976, 30000/1001. "
                   "Default 30" },
     [OPT_BOUNDS] = { 0, "bounds", "X,Y,Z,X,Y,Z",
                      "two corners of a box of the scene; initial points lie in it" },

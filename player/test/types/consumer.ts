@@ -5,7 +5,7 @@ import type { GraphicsDevice, GSplatContainer, GSplatData, Quat } from "playcanv
 import {
   Decoder, Scene, Ted4Client, Ted4Error, timeOfFragment, type Gaussians, type Vector,
 } from "ted4";
-import { pixelWidth, widening } from "ted4/adapters/pixel.js";
+import { trainedFocal, widening } from "ted4/adapters/pixel.js";
 import { drawAsAnnexI, setPixel } from "ted4/adapters/playcanvas-kernel.js";
 import { createContainer, updateContainer } from "ted4/adapters/playcanvas.js";
 import { annexI, createPackedSplats, updatePackedSplats } from "ted4/adapters/spark.js";
@@ -19,7 +19,7 @@ export async function useAll(device: GraphicsDevice, bytes: Uint8Array): Promise
   const { num, den } = timeOfFragment("#t=1.5", scene.info) ?? { num: 0, den: 1 };
   const gaussians: Gaussians = scene.gaussians(num, den, eye);
   drawAsAnnexI(device);
-  const pixel = pixelWidth(800, [{ fx: 400 }]);
+  const pixel = (trainedFocal([{ fx: 400 }]) ?? 800) / 800;
   setPixel(device, pixel);
   console.log(widening(pixel).learnt + widening(pixel).square);
   const container: GSplatContainer = createContainer(device, gaussians.n);
