@@ -5,9 +5,9 @@
 const LEARNT = 0.3; // what training adds to both variances, square pixels (I.2)
 const SQUARE = 1 / 12; // variance of a pixel
 
-// The focal length of the pictures of which the scene was learnt, in their pixels: the median of the
-// cameras that took them; null if there are none. A pixel that is drawn with the focal length fx has
-// the width trainedFocal(cameras) / fx.
+// The focal length of the pictures of which the scene was learnt, in their pixels: the median of
+// the cameras that took them; null if there are none. A pixel that is drawn with the focal length
+// fx has the width trainedFocal(cameras) / fx.
 export function trainedFocal(cameras) {
   const focal = cameras.map(({ fx }) => fx).sort((a, b) => a - b);
   return focal.length > 0 ? focal[focal.length >> 1] : null;
