@@ -146,7 +146,8 @@ def is_met(variant, change):
     if is_prior(variant):
         return "?" if change.bd_rate is None else change.bd_rate >= 10
     if variant == "static":
-        return (change.near_psnr if change.psnr is None else change.psnr) <= -1
+        loss = change.near_psnr if change.psnr is None else change.psnr
+        return "?" if loss is None else loss <= -1
     return "?" if change.worse is None else change.worse
 
 
