@@ -8,6 +8,16 @@
 #include "tool/cams.h"
 #include "tool/chunks.h"
 
+/* Row 0 times the cross product of rows 1 and 2. */
+static double determinant(const float R[9])
+{
+    const double x = (double)R[4] * R[8] - (double)R[5] * R[7];
+    const double y = (double)R[5] * R[6] - (double)R[3] * R[8];
+    const double z = (double)R[3] * R[7] - (double)R[4] * R[6];
+
+    return R[0] * x + R[1] * y + R[2] * z;
+}
+
 static void check_camera(const ted4_cams *c, size_t i)
 {
     const ted4_cams_camera camera = ted4_cams_get(c, i);
@@ -20,6 +30,7 @@ static void check_camera(const ted4_cams *c, size_t i)
     fuzz_require(isfinite(v->cx) && isfinite(v->cy), "a principal point");
     for (int k = 0; k < 9; k++)
         fuzz_require(fabsf(v->R[k]) <= 1.001f && isfinite(v->t[k % 3]), "a pose");
+    fuzz_require(determinant(v->R) > 0.99, "no mirror image");
     fuzz_require(camera.time.num <= camera.time.den, "a time");
     ted4_cams_put(again, &camera);
     fuzz_require(memcmp(again, c->camera + i * TED4_CAMS_CAMERA, sizeof again) == 0, "same bytes");

@@ -59,7 +59,8 @@ function isRotation(R) {
       if (!(Math.abs(dot - (i === j ? 1 : 0)) <= TOLERANCE)) return false;
     }
   }
-  return true;
+  const [a, b, c, d, e, f, g, h, k] = R;
+  return a * (e * k - f * h) + b * (f * g - d * k) + c * (d * h - e * g) > 0;
 }
 
 function isCamera({ width, height, fx, fy, cx, cy, R, t, num, den }) {

@@ -72,7 +72,8 @@ test("a CAMS without cameras leaves those before it", () => {
 
 for (const [what, change] of [
   ["an up that is too long", { up: [0, 0, 2] }], ["an unknown kind", { kind: 2 }],
-  ["no rotation", { R: [1, 0, 0, 0, 1, 0, 0, 0, 2] }], ["no width", { width: 0 }],
+  ["no rotation", { R: [1, 0, 0, 0, 1, 0, 0, 0, 2] }],
+  ["a mirror image", { R: [1, 0, 0, 0, 1, 0, 0, 0, -1] }], ["no width", { width: 0 }],
   ["a time after the end", { num: 5 }], ["a time of no time", { den: 0 }],
   ["a time that is no query", { den: 2 ** 24 }], ["an up that is no number", { up: [NaN, 0, 0] }],
 ]) {

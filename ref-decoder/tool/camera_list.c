@@ -90,9 +90,9 @@ static const char *get_camera(const json_t *o, ted4_listed_camera *c)
         return "needs fx and fy above 0";
     if (!get_number(o, "cx", &v->cx) || !get_number(o, "cy", &v->cy))
         return "needs cx and cy";
-    if (!get_numbers(o, "R", 9, v->R) || !ted4_is_rotation(v->R))
+    if (!get_numbers(o, "R", 9, v->R) || !ted4_is_orthogonal(v->R))
         return "needs R, a rotation of 9 numbers";
-    if (ted4_is_mirrored(v->R))
+    if (!ted4_is_rotation(v->R))
         return "has an R that is a mirror image, not a rotation";
     if (!get_numbers(o, "t", 3, v->t))
         return "needs t, 3 numbers";

@@ -144,9 +144,9 @@ static const char *get_pose(const transforms *t, const json_t *frame, ted4_view 
     for (int i = 0; i < 3; i++)
         if (!isfinite(v->t[i]))
             return "is too far away";
-    if (!ted4_is_rotation(v->R))
+    if (!ted4_is_orthogonal(v->R))
         return "has a transform_matrix that is no rotation";
-    return ted4_is_mirrored(v->R) ? "has a transform_matrix that is a mirror image" : NULL;
+    return ted4_is_rotation(v->R) ? NULL : "has a transform_matrix that is a mirror image";
 }
 
 static const char *get_time(const json_t *frame, ted4_listed_camera *c)

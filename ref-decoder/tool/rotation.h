@@ -9,9 +9,9 @@
  * has the same bound). */
 #define TED4_ROTATION_TOLERANCE 1e-3
 
-/* Returns 1 if R R^T is the identity within the tolerance, and all entries are finite. R: row by
- * row. */
-static inline int ted4_is_rotation(const float R[9])
+/* Returns 1 if R R^T is the identity within the tolerance, and all entries are finite: R is a
+ * rotation or the mirror image of one. R: row by row. */
+static inline int ted4_is_orthogonal(const float R[9])
 {
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++) {
@@ -26,9 +26,8 @@ static inline int ted4_is_rotation(const float R[9])
     return 1;
 }
 
-/* Returns 1 if R, for which ted4_is_rotation returns 1, is a mirror image of a rotation: the chunk
- * CAMS may hold one, but a camera that somebody describes is none. */
-static inline int ted4_is_mirrored(const float R[9])
+/* Returns 1 if R is orthogonal within the tolerance, and its determinant is above 0. */
+static inline int ted4_is_rotation(const float R[9])
 {
     double determinant = 0.0;
 
@@ -38,7 +37,7 @@ static inline int ted4_is_mirrored(const float R[9])
         determinant += (double)R[i] *
                        ((double)R[3 + j] * (double)R[6 + k] - (double)R[3 + k] * (double)R[6 + j]);
     }
-    return determinant < 0.0;
+    return ted4_is_orthogonal(R) && determinant > 0.0;
 }
 
 #endif

@@ -308,6 +308,7 @@ static void broken_cameras_are_refused(void **state)
     expect_refused(CAMERA + 16, infinite);
     expect_refused(CAMERA + 20, nan);
     expect_refused(CAMERA + 24, 0x3f800000);
+    expect_refused(CAMERA + 48, minus_one); /* R a mirror image */
     expect_refused(CAMERA + 56, nan);
     expect_refused(CAMERA + 68, infinite);
     expect_refused(CAMERA + 72, 8);        /* num above den */
