@@ -15,7 +15,7 @@ class Bars:
     """ok: True, False, None (not run yet), "?" (measured, but it says neither), or DELIVERED (it is
     there; no measurement could have missed it)."""
 
-    WORDS = {True: "met", False: "**missed**", None: "not run yet", "?": "cannot be said",
+    WORDS = {True: "met", False: "**missed**", None: "not run yet", "?": "undecided",
              DELIVERED: "delivered"}
 
     def __init__(self):
@@ -58,8 +58,7 @@ class Bars:
         count = self.verdicts
         text = (f"Bars: {count['met']} met, {count['**missed**']} missed, "
                 f"{count['not run yet']} not run yet"
-                + "".join(f", {count[word]} {text}" for word, text in (
-                    ("cannot be said", "that cannot be said"), ("delivered", "delivered"))
+                + "".join(f", {count[word]} {word}" for word in ("undecided", "delivered")
                           if count[word]) + ".")
         if count["delivered"]:
             text += (" *Delivered* is what is there by construction (a chart, a note, a budget that"

@@ -37,7 +37,7 @@ def is_mixed(rows):
 
 
 def of_one_encoder(ok, text, rows):
-    """A verdict and what it is about, with the mark of the rows behind them: cannot be said where
+    """A verdict and what it is about, with the mark of the rows behind them: undecided where
     the present sources made only some of these."""
     there = [run for run in rows if run.has()]
     if ok is not None and is_mixed(there):
@@ -84,7 +84,7 @@ class Change:
                           None with fewer than two, where the curves share no PSNR, or where the
                           present sources made only some of the rows
     is_cubic              which of the two
-    worse                 than the base: True, False, or None: it cannot be said"""
+    worse                 than the base: True, False, or None: undecided"""
 
     def __init__(self, runs, scene, variant, against=None):
         self.base = base = against or base_of(variant)

@@ -209,6 +209,6 @@ def seed_bars(lab):
     same = sum(a.text("hash") == b.text("hash") and a.text("bytes") == b.text("bytes")
                for a, b in compared)
     lab.bars.add(3, "the same seed trained twice", "the same bytes",
-                 f"{len(compared)} of {len(again)} scenes told, {same} equal in size and hash",
+                 f"{len(compared)} of {len(again)} scenes compared, {same} equal in size and hash",
                  False if len(compared) > same else True if again and len(compared) == len(again)
                  else None, command("again '*-whole-1'"))

@@ -269,9 +269,9 @@ def open_section(report, page):
     page.prose(bars.summary("report-tables.md"))
     page.prose(ground(report))
     page.prose("""[All bars](report-tables.md#bars). The [notes](#notes) explain those that are not
-        met. "Cannot be said" stands for those that were measured, but neither met nor missed:""")
+        met. "Undecided" stands for those that were measured, but neither met nor missed:""")
     page.say()
-    for wanted in ("**missed**", "cannot be said", "not run yet"):
+    for wanted in ("**missed**", "undecided", "not run yet"):
         for row in bars.rows:
             if row.verdict == wanted:
                 more = row.said[len(row.verdict):].lstrip(":; ")

@@ -43,7 +43,7 @@ def tables_text(report):
     head.prose(report.runs.summary() + ".")
     head.heading("Bars")
     head.prose("""The bars are those of the method, by number. "Not run yet" stands wherever a run
-        is missing, "cannot be said" where the rows neither meet nor miss a bar. A bar about a part
+        is missing, "undecided" where the rows neither meet nor miss a bar. A bar about a part
         of the method (1) is judged by BD-rate or PSNR at equal bytes, over several seeds where one
         cannot decide, on every scene in which something moves and that has rows of both sides. It
         is met if all of these scenes meet it, and if they are at least two with more than one

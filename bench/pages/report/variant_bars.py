@@ -28,16 +28,16 @@ BARS = (
     Bar("inr", "bank against inr, layers as wide as F_deform's (the paper has no such row)",
         "bank better", first_bars.inr),
     Bar("factorised_flat",
-        "inr prior against factorised prior, components independent as in the paper's", PRIOR,
+        "hyperprior against factorised prior, components independent as in the paper's", PRIOR,
         first_bars.prior),
     Bar("factorised_flat_auto",
         "the same two priors, both with the choice of capacity, as by default", PRIOR,
         first_bars.prior),
-    Bar("factorised", "inr prior against factorised prior that keeps the autoregression (the paper "
-        "has no such row)", PRIOR, first_bars.prior),
-    Bar("factorised_auto", "inr prior against factorised prior with autoregression, both with the "
+    Bar("factorised", "hyperprior against factorised prior that keeps the autoregression (the "
+        "paper has no such row)", PRIOR, first_bars.prior),
+    Bar("factorised_auto", "hyperprior against factorised prior with autoregression, both with the "
         "choice of capacity, as by default", PRIOR, first_bars.prior),
-    Bar("factorised_long", "inr prior against factorised prior with autoregression, both with "
+    Bar("factorised_long", "hyperprior against factorised prior with autoregression, both with "
         "the steps of preset fast{then}", PRIOR, first_bars.prior),
     Bar("noactive", "no activation", "costs rate or quality"),
     Bar("noprogress", "no progressive training", "costs quality", first_bars.noprogress),

@@ -115,7 +115,7 @@ def near_text(runs, run):
 
 def verdict(variant, worse):
     if worse is None:
-        return "cannot be said"
+        return "undecided"
     if variant not in PAPER:
         return "worse" if worse else "better"
     return "worse, as in the paper" if worse else "better, **unlike the paper**: see the notes"
