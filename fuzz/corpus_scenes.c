@@ -1,6 +1,7 @@
 /* corpus_scenes.c - see corpus.h. If a harness takes several files of a scene, the first byte of a
  * seed says which of them it is.
  * SPDX-License-Identifier: BSD-2-Clause */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -59,6 +60,21 @@ static const text_seed transforms[] = {
     { "transforms", "train.json", 1, "{\"camera_angle_x\":0.7,\"frames\":[" PICTURE("./a", "\"time\":0,") "]}" },
     { "transforms", "test.json", 2, "{\"camera_angle_x\":0.7,\"frames\":[" PICTURE("./a", "\"time\":0,") "]}" },
     { "transforms", "broken.json", 0, "{\"frames\":[1" },
+    { "transforms", "no_pose.json", 0, "{\"fl_x\":2,\"frames\":[{\"file_path\":\"a.png\"}]}" },
+    { "transforms", "short_pose.json", 0, "{\"fl_x\":2,\"frames\":[{\"file_path\":\"a.png\",\"transform_matrix\":[[1,0],[0,1]]}]}" },
+    { "transforms", "last_row.json", 0, "{\"fl_x\":2,\"frames\":[{\"file_path\":\"a.png\",\"transform_matrix\":[[1,0,0,0],[0,1,0,0],[0,0,1,4],[0,0,0,2]]}]}" },
+    { "transforms", "sheared.json", 0, "{\"fl_x\":2,\"frames\":[{\"file_path\":\"a.png\",\"transform_matrix\":[1,0,0,0,1,1,0,0,0,0,1,4,0,0,0,1]}]}" },
+    { "transforms", "no_path.json", 0, "{\"fl_x\":2,\"frames\":[{\"transform_matrix\":" POSE "}]}" },
+    { "transforms", "camera_kind.json", 0, "{\"fl_x\":2,\"frames\":[" PICTURE("a.png", "\"camera\":[],") "]}" },
+    { "transforms", "frame_kind.json", 0, "{\"fl_x\":2,\"frames\":[1]}" },
+    { "transforms", "no_frames.json", 0, "{\"fl_x\":2,\"frames\":[]}" },
+    { "transforms", "some_times.json", 0, "{\"fl_x\":2,\"frames\":[" PICTURE("a.png", "\"time\":0,") "," PICTURE("b.png", "") "]}" },
+    { "transforms", "applied.json", 0, "{\"fl_x\":2,\"applied_transform\":[[0,0,0,0],[0,1,0,0],[0,0,1,0]],\"frames\":[" PICTURE("a.png", "") "]}" },
+    { "transforms", "rate.json", 0, "{\"fl_x\":2,\"fps\":-1,\"frames\":[" PICTURE("a.png", "") "]}" },
+    { "transforms", "lens.json", 0, "{\"fl_x\":\"2\",\"fl_y\":0,\"k1\":\"x\",\"frames\":[" PICTURE("a.png", "") "]}" },
+    { "transforms", "unknown_name.json", 0, "{\"fl_x\":2,\"train_filenames\":[\"a.png\"],\"test_filenames\":[\"z.png\"],\"frames\":[" PICTURE("./a.png", "") "," PICTURE("b.png", "") "]}" },
+    { "transforms", "names_kind.json", 0, "{\"fl_x\":2,\"train_filenames\":7,\"frames\":[" PICTURE("a.png", "") "]}" },
+    { "transforms", "twice_named.json", 0, "{\"fl_x\":2,\"train_filenames\":[\"a.png\",\"a.png\"],\"test_filenames\":[\"b.png\"],\"frames\":[" PICTURE("a.png", "") "," PICTURE("b.png", "") "]}" },
 };
 /* clang-format on */
 
@@ -101,6 +117,27 @@ static const text_seed other_json[] = {
     { "camera_list", "no_rotation.json", PLAIN,
       "[{\"width\":4,\"height\":3,\"fx\":2,\"fy\":2,\"cx\":2,\"cy\":1,\"R\":[1,0,0,0,2,0,0,0,1]}"
       "]" },
+    { "camera_list", "not_object.json", PLAIN, "[1]" },
+    { "camera_list", "no_focal.json", PLAIN, "[{\"width\":4,\"height\":3,\"fx\":0,\"fy\":2}]" },
+    { "camera_list", "no_centre.json", PLAIN,
+      "[{\"width\":4,\"height\":3,\"fx\":1,\"fy\":2,\"cx\":1e39,\"cy\":0}]" },
+    { "camera_list", "no_number.json", PLAIN,
+      "[{\"width\":4,\"height\":3,\"fx\":1,\"fy\":2,\"cx\":1,\"cy\":0,\"R\":[1,0,0,0,1,0,0,0,\"1\"]"
+      "}]" },
+    { "camera_list", "mirror.json", PLAIN,
+      "[{\"width\":4,\"height\":3,\"fx\":1,\"fy\":2,\"cx\":1,\"cy\":0,\"R\":[1,0,0,0,1,0,0,0,-1]}"
+      "]" },
+    { "camera_list", "no_t.json", PLAIN,
+      "[{\"width\":4,\"height\":3,\"fx\":1,\"fy\":2,\"cx\":1,\"cy\":0,\"R\":[1,0,0,0,1,0,0,0,1],"
+      "\"t\":[0]}]" },
+    { "camera_list", "pixel.json", PLAIN, "[{" VIEW "\"pixel\":0.5},{" VIEW "\"pixel\":-1}]" },
+    { "camera_list", "late.json", PLAIN, "[{" VIEW "\"time\":1.5}]" },
+    { "calibration", "no_pose.json", PLAIN,
+      "{\"cameras\":[{\"name\":\"cam0\",\"w\":2,\"h\":2,\"K\":[[2,0,1],[0,2,1],[0,0,1]],\"w2c\":[["
+      "1]]}]}" },
+    { "calibration", "no_name.json", PLAIN,
+      "{\"fps\":0,\"cameras\":[{\"name\":7,\"w\":2,\"h\":2}]}" },
+    { "calibration", "no_list.json", PLAIN, "{\"cameras\":{}}" },
     { "ply", "ascii.ply", PLAIN,
       "ply\nformat ascii 1.0\ncomment x\nelement vertex 2\nproperty float x\nproperty double "
       "y\nproperty short z\n"
@@ -216,10 +253,12 @@ static void numpy(const char *group, const char *name, int kind, const char *hea
 static void all_numpy(void)
 {
     static const double row[17] = { 0, 1, 0, 0, 2, 1, 0, 0, 0, 2, 0, 0, -1, 0, 3, 1, 9 };
-    double two[34];
+    static const double endless[3] = { 0, NAN, 1 };
+    double two[34], three[51];
 
-    memcpy(two, row, sizeof row);
-    memcpy(two + 17, row, sizeof row);
+    for (size_t i = 0; i < 51; i++)
+        three[i] = row[i % 17];
+    memcpy(two, three, sizeof two);
     numpy("npy", "poses_bounds.npy", PLAIN,
           "{'descr': '<f8', 'fortran_order': False, 'shape': (2, 17), }\n", two, 34, 0);
     numpy("npy", "points.npy", PLAIN,
@@ -230,6 +269,20 @@ static void all_numpy(void)
           "{'descr': '<f4', 'fortran_order': True, 'shape': (2, 3), }\n", row, 6, 1);
     numpy("npy", "one_row.npy", PLAIN,
           "{'descr': '<f8', 'fortran_order': False, 'shape': (1, 17), }\n", row, 17, 0);
+    numpy("npy", "three.npy", PLAIN,
+          "{'descr': '<f8', 'fortran_order': False, 'shape': (3, 17), }\n", three, 51, 0);
+    numpy("npy", "four.npy", PLAIN,
+          "{'descr': '<f8', 'fortran_order': False, 'shape': (4, 17), }\n", three, 51, 0);
+    numpy("npy", "endless.npy", PLAIN,
+          "{'descr': '<f4', 'fortran_order': False, 'shape': (1, 3), }\n", endless, 3, 1);
+    numpy("npy", "one_axis.npy", PLAIN,
+          "{'descr': '<f4', 'fortran_order': False, 'shape': (3,), }\n", row, 3, 1);
+    corpus_write("npy", "version2.npy",
+                 "\x93NUMPY\2\0\x3a\0\0\0{'descr': '<f4', 'fortran_order': False, 'shape': (1, 3)}"
+                 "\n\0\0\0\0\0\0\0\0\0\0\0\0",
+                 82);
+    corpus_write("npy", "cut.npy", "\x93NUMPY\1\0\xff\0{", 11);
+    corpus_write("npy", "neither", "not an array", 12);
     numpy("npy", "integers.npy", PLAIN,
           "{'descr': '<i8', 'fortran_order': False, 'shape': (1, 3), }\n", row, 3, 0);
     numpy("hypernerf", "points.npy", 3,

@@ -4,11 +4,14 @@
  * arrived so far, a truncated file. Claims: the gathered bytes are those that were sent, and none
  * if the stream breaks; at the end of each piece and chunk the verdict is con.truncated at that
  * place, or one of pass 1 that no later byte changes; or the file was complete there, and the
- * verdict on further bytes is con.trailing.
+ * verdict on further bytes is con.trailing. What ted4_read_ted4() leaves unread of a longer file
+ * does not change the verdict.
  * SPDX-License-Identifier: BSD-2-Clause */
-#define _GNU_SOURCE /* fopencookie(): a stream with its own read function */
+#define _GNU_SOURCE /* fopencookie(): a stream with its own read function; memfd_create() */
 #include <stdio.h>
 #include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
 #include "lcg.h"
 #include "harness.h"
 #include "fix_hashes.h"
@@ -92,6 +95,35 @@ static void check_end(const uint8_t *data, size_t n, ted4_error whole)
                      "what pass 1 has found stays");
 }
 
+/* Zeros behind the bytes make the file longer than the reader's first buffer. */
+static void check_longer_file(const uint8_t *data, size_t n)
+{
+    enum { ZEROS = 1 << 16 };
+    const int file = memfd_create("fuzz", 0);
+    uint8_t *const all = calloc(n + ZEROS, 1), *some;
+    char path[40];
+    size_t size = 0;
+    int pass_1;
+
+    fuzz_require(file >= 0 && all != NULL, "memory");
+    memcpy(all, data, n);
+    fuzz_require(write(file, all, n + ZEROS) == (ssize_t)(n + ZEROS), "a file");
+    snprintf(path, sizeof path, "/proc/self/fd/%d", file);
+    some = ted4_read_ted4(path, &size);
+    fuzz_require(some != NULL && size <= n + ZEROS && memcmp(some, all, size) == 0,
+                 "the bytes of the file");
+
+    const ted4_error whole = verdict_of(all, n + ZEROS, &pass_1);
+    const ted4_error part = verdict_of(some, size, &pass_1);
+
+    fuzz_require(part.code == whole.code && part.offset == whole.offset, "the verdict on all");
+    fuzz_require(whole.code != TED4_E_CON_TRAILING || size == n + ZEROS,
+                 "a file that its level allows is read whole");
+    close(file);
+    free(some);
+    free(all);
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     const size_t n = ted4_without_tail(data, size, TAIL);
@@ -121,6 +153,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         if (at < n)
             check_end(data, at, whole);
     }
+    check_longer_file(data, n);
     p.breaks_at = n / 2;
     p.at = 0;
     fuzz_require(n == 0 || gather(p, &got) == NULL, "nothing of a stream that breaks");

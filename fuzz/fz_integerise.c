@@ -4,6 +4,7 @@
  * R-NET-002 to R-NET-006, applied in that order with exact numbers; values returned by ted4_snap()
  * for any input are accepted, and evaluate to the same bounded numbers with the plain layers and
  * with this machine's; profile Compact can code them as integers (spec 7.6), which are read back.
+ * ted4_positions_sort() gives the order of chapter 8, the first of equal positions.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <string.h>
@@ -66,6 +67,7 @@ static int take_nets(fuzz_source *in, nets *n)
     h->hyper_layers = h->prior == TED4_PRIOR_INR ? (uint8_t)fuzz_in(in, 0, 2) : 0;
     h->hyper_width = h->hyper_layers > 0 ? 3 : 0;
     h->context_bits = (uint8_t)fuzz_in(in, 0, 12);
+    h->pe_octaves = h->prior == TED4_PRIOR_INR ? (uint8_t)fuzz_in(in, 0, 3) : 0;
     ted4_shape_make(&n->shape, h);
     return n->shape.n_nete <= MAX_VALUES && n->shape.n_units <= MAX_VALUES;
 }
@@ -234,6 +236,30 @@ static void in_compact(nets *n, ted4_prior *prior)
     ted4_writer_finish(&w);
 }
 
+/* The positions have few bits, so that some are equal. */
+static void check_order(fuzz_source *in)
+{
+    enum { ANCHORS = 12 };
+    uint16_t position[3 * ANCHORS];
+    uint32_t order[ANCHORS];
+    size_t n, k;
+
+    for (size_t i = 0; i < 3 * ANCHORS; i++)
+        position[i] = fuzz_u16(in) & 0x3401;
+    n = ted4_positions_sort(position, ANCHORS, order);
+    fuzz_require(n > 0 && n <= ANCHORS, "a number of anchors");
+    for (size_t i = 1; i < n; i++)
+        fuzz_require(ted4_morton(position + 3 * order[i - 1]) <
+                         ted4_morton(position + 3 * order[i]),
+                     "codes that rise");
+    for (uint32_t a = 0; a < ANCHORS; a++) {
+        for (k = 0; k < n; k++)
+            if (memcmp(position + 3 * order[k], position + 3 * a, 3 * sizeof *position) == 0)
+                break;
+        fuzz_require(k < n && order[k] <= a, "the first of equal positions");
+    }
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     static nets n;
@@ -241,6 +267,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     ted4_arena arena;
     ted4_prior prior;
     ted4_error e = { TED4_OK, 0 }, want;
+    int finest;
 
     for (int i = 0; i < 8; i++)
         check_rounding(&in);
@@ -253,10 +280,15 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     fuzz_require(ted4_prior_load(&prior, n.value, n.shift, &e) == want.code,
                  "the verdict of the rules");
     fuzz_require(e.code == want.code && e.offset == want.offset, "the first value that breaks one");
-    ted4_snap_coarse(&n.h, &n.shape, fuzz_u8(&in) % 21, n.value, n.shift);
+    finest = fuzz_u8(&in) % (TED4_MAX_SHIFT + 1);
+    if (finest == TED4_MAX_SHIFT)
+        ted4_snap(&n.h, &n.shape, n.value, n.shift);
+    else
+        ted4_snap_coarse(&n.h, &n.shape, finest, n.value, n.shift);
     fuzz_require(ted4_prior_load(&prior, n.value, n.shift, NULL) == TED4_OK, "snapped values");
     in_compact(&n, &prior);
     evaluate(&in, &n, &prior);
+    check_order(&in);
     ted4_arena_finish(&arena);
     return 0;
 }

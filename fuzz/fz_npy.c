@@ -44,7 +44,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 
     (void)fuzz_scene("npy");
     (void)fuzz_picture("images/cam0/1.png");
-    (void)fuzz_picture("images/cam1/1.png");
+    (void)fuzz_picture("images/cam2/1.png");
     path = fuzz_file("poses_bounds.npy", data, size);
     check_table(path, 3, data, size);
     check_table(path, 17, data, size);
