@@ -49,27 +49,31 @@ deps-player: deps
 .PHONY: player-wasm player-test player-conformance player-package deps-player
 
 # The page (page/), by esbuild and the packages that player/package-lock.json pins; they lie in the
-# build folder. The licence of PlayCanvas comes first in player.js.
+# build folder, as do those that only the tests need
+# (player/test/package-lock.json). The licence of PlayCanvas comes first in player.js.
 NPM     = $W/npm
-BIN     = $(NPM)/node_modules/.bin
-ESBUILD = NODE_PATH="$(abspath $(NPM)/node_modules)" $(BIN)/esbuild --bundle \
-          --minify --format=iife --target=es2022 --log-level=warning
+NPM_TEST = $W/npm-test
+ESBUILD = $(NPM)/node_modules/.bin/esbuild --bundle --minify --format=iife --target=es2022 \
+          --log-level=warning
 PAGE_LICENCE = $(NPM)/node_modules/playcanvas/LICENSE
 PAGE_SRC = $(wildcard player/page/*.js player/src/*.js player/adapters/*.js)
 ADAPTERS = $(patsubst %,$W/adapters/%,index.html playcanvas.js spark.js supersplat.js)
 player: $(addprefix $W/,index.html style.css player.js ted4.wasm)
 $(NPM)/installed: player/package-lock.json
+$(NPM_TEST)/installed: player/test/package-lock.json
+$(NPM)/installed $(NPM_TEST)/installed:
 	@mkdir -p $(@D)
-	cp $< player/package.json $(@D)
+	cp $< $(<D)/package.json $(@D)
 	cd $(@D) && npm ci --prefer-offline --ignore-scripts --no-audit --no-fund --loglevel=error
 	@touch $@
 $W/index.html $W/style.css: $W/%: player/page/%
 	@mkdir -p $(@D)
 	cp $< $@
 $W/worker.txt: $(PAGE_SRC) $(NPM)/installed
-	$(ESBUILD) player/src/worker.js --outfile=$@
+	NODE_PATH="$(abspath $(NPM)/node_modules)" $(ESBUILD) player/src/worker.js --outfile=$@
 $W/player.js: $(PAGE_SRC) $W/worker.txt $(NPM)/installed
-	$(ESBUILD) player/page/main.js --loader:.txt=text --outfile=$@.new \
+	NODE_PATH="$(abspath $(NPM)/node_modules)" $(ESBUILD) player/page/main.js \
+	    --loader:.txt=text --outfile=$@.new \
 	    --alias:worker-text="$(abspath $W/worker.txt)" --log-override:empty-import-meta=silent
 	{ echo '/*! PlayCanvas:'; cat $(PAGE_LICENCE); echo '*/'; cat $@.new; } >$@
 	@rm $@.new
@@ -77,32 +81,37 @@ player-html: player
 	node player/export.mjs $W "$(FILE)" "$(OUT)"
 .PHONY: player player-html
 
-# The page, and those of the adapters, in headless Chromium, with a small file that is trained for
-# it; what splat-transform makes of that file's exports; the package, and its types by TypeScript.
+# The page, and those of the adapters, in Chromium and in Firefox, with a small file that is trained
+# for it; what splat-transform makes of that file's exports; the package, and its types by
+# TypeScript. Firefox has no WebGL without a display.
 T       = $W/test
+TEST_PLAYER = TED4_PLAYER="$(abspath $W)" TED4_SCENE="$(abspath $T/occluder.ted4)" \
+              TED4_OUT="$(abspath $T)" TED4_PROGRAMS="$(abspath $B)" \
+              TED4_MODULES="$(abspath $(NPM_TEST)/node_modules)" \
+              TED4_PACKAGE="$(abspath $W/ted4.tgz)"
 $W/adapters/index.html: player/adapters/pages/index.html
 	@mkdir -p $(@D)
 	cp $< $@
 $W/adapters/%.js: player/adapters/pages/%.js $(PAGE_SRC) $(wildcard player/adapters/pages/*.js) \
-    $(NPM)/installed
-	$(ESBUILD) $< --outfile=$@
+    $(NPM)/installed $(NPM_TEST)/installed
+	NODE_PATH="$(abspath $(NPM_TEST)/node_modules)" $(ESBUILD) $< --outfile=$@
 test-player: player $(ADAPTERS) $W/ted4.tgz $T/occluder.ted4 $B/ted4dec $B/ted4edit
-	TED4_PLAYER="$(abspath $W)" TED4_SCENE="$(abspath $T/occluder.ted4)" \
-	TED4_OUT="$(abspath $T)" TED4_PROGRAMS="$(abspath $B)" \
-	TED4_SPLAT_TRANSFORM="$(abspath $(BIN)/splat-transform)" \
-	TED4_PACKAGE="$(abspath $W/ted4.tgz)" \
-	TED4_MODULES="$(abspath $(NPM)/node_modules)" node --test --test-concurrency=1 \
-	    player/test/*.browser.mjs \
-	    $(patsubst %,player/test/%.mjs,conversions package types)
+	$(TEST_PLAYER) node --test player/test/conversions.mjs player/test/package.mjs \
+	    player/test/types.mjs
+	$(TEST_PLAYER) node --test --test-concurrency=1 player/test/*.browser.mjs
+	@mkdir -p $T/firefox
+	$(TEST_PLAYER) TED4_BROWSER=firefox TED4_OUT="$(abspath $T/firefox)" \
+	    xvfb-run -a -s '-screen 0 1600x1200x24' \
+	    node --test --test-concurrency=1 player/test/*.browser.mjs
 $T/occluder.ted4: | $B/ted4scene $B/ted4enc
 	@mkdir -p $T
 	$B/ted4scene occluder -o $T/scene -f
 	$B/ted4enc $T/scene -o $@ --preset draft --iterations 800,400 --seed 1 \
 	    --cameras -f -q
-player-speed: player $B/ted4dec
-	TED4_PLAYER="$(abspath $W)" node player/test/speed.mjs $(FILE)
+player-speed: player $B/ted4dec $(NPM_TEST)/installed
+	$(TEST_PLAYER) node player/test/speed.mjs $(FILE)
 	TED4_WASM="$(abspath $W/ted4.wasm)" TED4_DEC="$(abspath $B/ted4dec)" \
 	    node player/test/decode_speed.mjs $(FILE)
 deps-test-player: deps-player
-	@$(call INSTALL_DEBIAN,chromium)
+	@$(call INSTALL_DEBIAN,chromium firefox-esr xvfb xauth libgl1-mesa-dri libegl1)
 .PHONY: test-player player-speed deps-test-player

@@ -32,7 +32,9 @@ export class View {
     const view = new View();
     const options = new AppOptions();
     options.graphicsDevice = await createGraphicsDevice(canvas,
-      { deviceTypes: [DEVICETYPE_WEBGL2], antialias: false, alpha: false });
+      { deviceTypes: [DEVICETYPE_WEBGL2], antialias: false, alpha: false }).catch(() => {
+      throw new Error("the page draws with WebGL 2, which this browser does not offer");
+    });
     options.componentSystems = [CameraComponentSystem, GSplatComponentSystem];
     view.#start(canvas, options);
     return view;

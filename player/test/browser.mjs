@@ -1,125 +1,78 @@
-// browser.mjs - headless Chromium, driven by the DevTools protocol over a pipe. Drawing is done in
-// software (SwiftShader), so that it works on machines without a GPU.
+// browser.mjs - Chromium or Firefox, as TED4_BROWSER says, driven by Puppeteer. Drawing is done in
+// software, so that it works on machines without a GPU; Firefox needs a display for it (xvfb-run).
 // SPDX-License-Identifier: BSD-2-Clause
-import { spawn } from "node:child_process";
-import { mkdtempSync, rmSync } from "node:fs";
-import { tmpdir } from "node:os";
+import { createRequire } from "node:module";
 import { join } from "node:path";
+import { needed } from "./fixture.mjs";
 
-const CHROMIUM = process.env.CHROMIUM ?? "chromium";
-const FLAGS = ["--headless=new", "--no-sandbox", "--no-first-run", "--disable-gpu-vsync",
-  "--remote-debugging-pipe", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
-  "--ignore-gpu-blocklist", "--force-device-scale-factor=1", "--hide-scrollbars",
-  "--disable-background-networking", "--disable-component-update"];
+const puppeteer = createRequire(join(needed("TED4_MODULES"), "/"))("puppeteer-core");
+export const NAME = process.env.TED4_BROWSER ?? "chromium";
+const LAUNCH = {
+  chromium: {
+    browser: "chrome", executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", pipe: true,
+    args: ["--no-sandbox", "--no-first-run", "--disable-gpu-vsync", "--use-angle=swiftshader",
+      "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist", "--force-device-scale-factor=1",
+      "--hide-scrollbars", "--disable-background-networking", "--disable-component-update"],
+  },
+  firefox: {
+    browser: "firefox", executablePath: process.env.FIREFOX ?? "/usr/bin/firefox-esr",
+    headless: false, extraPrefsFirefox: { "webgl.force-enabled": true },
+  },
+};
+
+const pause = (milliseconds) => new Promise((resolve) => { setTimeout(resolve, milliseconds); });
 
 export class Browser {
-  #process;
-  #folder = mkdtempSync(join(tmpdir(), "ted4-chromium-"));
-  #waiting = new Map();
-  #calls = 0;
-  #pages = new Map();
-
-  constructor() {
-    this.#process = spawn(CHROMIUM, [...FLAGS, `--user-data-dir=${this.#folder}`, "about:blank"],
-      { stdio: ["ignore", "ignore", "ignore", "pipe", "pipe"] });
-    let rest = "";
-    this.#process.stdio[4].setEncoding("utf8").on("data", (text) => {
-      const parts = (rest + text).split("\0");
-      rest = parts.pop();
-      for (const part of parts) this.#receive(JSON.parse(part));
-    });
-    this.#process.on("error", (e) => { throw e; });
-  }
-
-  #receive({ id, result, error, method, params, sessionId }) {
-    if (id === undefined) {
-      this.#pages.get(sessionId)?.receive(method, params);
-      return;
-    }
-    const { resolve, reject } = this.#waiting.get(id);
-    this.#waiting.delete(id);
-    if (error) reject(new Error(error.message));
-    else resolve(result);
-  }
-
-  send(method, params = {}, sessionId = undefined) {
-    const id = ++this.#calls;
-    this.#process.stdio[3].write(`${JSON.stringify({ id, method, params, sessionId })}\0`);
-    return new Promise((resolve, reject) => this.#waiting.set(id, { resolve, reject }));
-  }
+  #browser = puppeteer.launch({ defaultViewport: null, ...LAUNCH[NAME] });
 
   // A new tab of that many pixels.
   async page(width, height) {
-    const { targetId } = await this.send("Target.createTarget", { url: "about:blank" });
-    const { sessionId } = await this.send("Target.attachToTarget", { targetId, flatten: true });
-    const page = new Page((method, params) => this.send(method, params, sessionId),
-      () => this.send("Target.closeTarget", { targetId }));
-    this.#pages.set(sessionId, page);
-    await page.start(width, height);
+    const page = new Page(await (await this.#browser).newPage());
+    await page.resize(width, height);
     return page;
   }
 
   async close() {
-    const exited = new Promise((resolve) => { this.#process.once("exit", resolve); });
-    this.send("Browser.close").catch(() => {});
-    await exited;
-    rmSync(this.#folder, { recursive: true, force: true, maxRetries: 5 });
+    await (await this.#browser).close();
   }
 }
 
 export class Page {
-  #send;
-  #loaded = null;
-  #choosing = null;
+  #page;
   errors = []; // uncaught exceptions, and errors on the console
   requests = []; // addresses
 
-  constructor(send, close) {
-    this.#send = send;
-    this.close = close;
+  constructor(page) {
+    this.#page = page;
+    page.on("pageerror", (error) => this.errors.push(error.stack ?? error.message));
+    page.on("console", (message) => {
+      if (message.type() === "error")
+        this.errors.push(`${message.text()} ${message.location()?.url ?? ""}`);
+    });
+    page.on("request", (request) => this.requests.push(request.url()));
   }
 
-  async start(width, height) {
-    for (const domain of ["Page", "Runtime", "Network", "Log"])
-      await this.#send(`${domain}.enable`);
-    await this.resize(width, height);
-  }
-
-  receive(method, params) {
-    if (method === "Page.loadEventFired") this.#loaded?.();
-    if (method === "Page.fileChooserOpened") this.#choosing?.(params.backendNodeId);
-    if (method === "Runtime.exceptionThrown")
-      this.errors.push(params.exceptionDetails.exception?.description ??
-        params.exceptionDetails.text);
-    if (method === "Log.entryAdded" && params.entry.level === "error")
-      this.errors.push(`${params.entry.text} ${params.entry.url ?? ""}`);
-    if (method === "Network.requestWillBeSent") this.requests.push(params.request.url);
+  close() {
+    return this.#page.close();
   }
 
   // ratio: pixels of the screen per pixel of the page.
   resize(width, height, ratio = 1) {
-    return this.#send("Emulation.setDeviceMetricsOverride",
-      { width, height, deviceScaleFactor: ratio, mobile: false });
+    return this.#page.setViewport({ width, height, deviceScaleFactor: ratio });
   }
 
   // Runs a script in every document that is opened from then on, before those of its own.
   before(source) {
-    return this.#send("Page.addScriptToEvaluateOnNewDocument", { source });
+    return this.#page.evaluateOnNewDocument(source);
   }
 
-  async open(url) {
-    const loaded = new Promise((resolve) => { this.#loaded = resolve; });
-    await this.#send("Page.navigate", { url });
-    await loaded;
+  open(url) {
+    return this.#page.goto(url, { waitUntil: "load" });
   }
 
   // The value, or what its promise gives, of an expression of the page.
-  async evaluate(expression) {
-    const { result, exceptionDetails } = await this.#send("Runtime.evaluate",
-      { expression, awaitPromise: true, returnByValue: true });
-    if (exceptionDetails)
-      throw new Error(exceptionDetails.exception?.description ?? exceptionDetails.text);
-    return result.value;
+  evaluate(expression) {
+    return this.#page.evaluate(expression);
   }
 
   // Waits until the expression is true.
@@ -128,58 +81,51 @@ export class Page {
     while (!await this.evaluate(`Boolean(${expression})`)) {
       if (Date.now() > end)
         throw new Error(`not within ${seconds} s: ${expression}; ${this.errors.join("; ")}`);
-      await new Promise((resolve) => { setTimeout(resolve, 50); });
+      await pause(50);
     }
   }
 
   // A PNG, base64.
-  async screenshot() {
-    return (await this.#send("Page.captureScreenshot", { format: "png" })).data;
+  screenshot() {
+    return this.#page.screenshot({ encoding: "base64", captureBeyondViewport: false });
   }
 
   // times: how often the key is sent while it is down.
-  async press(key, code = key, times = 1) {
-    const text = key === "Enter" ? "\r" : key.length === 1 ? key : undefined;
-    for (let i = 0; i < times; i++)
-      await this.#send("Input.dispatchKeyEvent",
-        { type: "keyDown", key, code, text, autoRepeat: i > 0 });
-    await this.#send("Input.dispatchKeyEvent", { type: "keyUp", key, code });
+  async press(key, times = 1) {
+    for (let i = 0; i < times; i++) await this.#page.keyboard.down(key);
+    await this.#page.keyboard.up(key);
+  }
+
+  async hold(key, milliseconds) {
+    await this.#page.keyboard.down(key);
+    await pause(milliseconds);
+    await this.#page.keyboard.up(key);
   }
 
   // Chooses a file in the dialog that the action opens.
   async choose(file, action) {
-    await this.#send("Page.setInterceptFileChooserDialog", { enabled: true });
-    const opened = new Promise((resolve) => { this.#choosing = resolve; });
-    await action();
-    const backendNodeId = await opened;
-    await this.#send("DOM.setFileInputFiles", { files: [file], backendNodeId });
-  }
-
-  async hold(key, code, milliseconds) {
-    await this.#send("Input.dispatchKeyEvent", { type: "keyDown", key, code });
-    await new Promise((resolve) => { setTimeout(resolve, milliseconds); });
-    await this.#send("Input.dispatchKeyEvent", { type: "keyUp", key, code });
+    const [chooser] = await Promise.all([this.#page.waitForFileChooser(), action()]);
+    await chooser.accept([file]);
   }
 
   // Two fingers, from and to [x, y] each.
   async pinch(from, to) {
-    const touch = (type, points) => this.#send("Input.dispatchTouchEvent",
-      { type, touchPoints: points.map(([x, y], id) => ({ x, y, id })) });
-    await touch("touchStart", from);
-    await touch("touchMove", to);
-    await touch("touchEnd", []);
+    const fingers = [];
+    for (const at of from) fingers.push(await this.#page.touchscreen.touchStart(...at));
+    for (const [i, at] of to.entries()) await fingers[i].move(...at);
+    for (const finger of fingers) await finger.end();
   }
 
   async drag(x, y, toX, toY, button = "left") {
-    const event = (type, px, py, buttons) => this.#send("Input.dispatchMouseEvent",
-      { type, x: px, y: py, button, buttons, clickCount: 1 });
-    const down = button === "left" ? 1 : 2;
-    await event("mousePressed", x, y, down);
-    await event("mouseMoved", toX, toY, down);
-    await event("mouseReleased", toX, toY, 0);
+    const { mouse } = this.#page;
+    await mouse.move(x, y);
+    await mouse.down({ button });
+    await mouse.move(toX, toY);
+    await mouse.up({ button });
   }
 
   async wheel(x, y, deltaY) {
-    await this.#send("Input.dispatchMouseEvent", { type: "mouseWheel", x, y, deltaX: 0, deltaY });
+    await this.#page.mouse.move(x, y);
+    await this.#page.mouse.wheel({ deltaY });
   }
 }

@@ -9,7 +9,7 @@ import { join } from "node:path";
 import { before, test } from "node:test";
 import { decode, needed, OUT, SCENE } from "./fixture.mjs";
 
-const TRANSFORM = needed("TED4_SPLAT_TRANSFORM"); // the program
+const TRANSFORM = join(needed("TED4_MODULES"), ".bin/splat-transform");
 const FRAMES = [0, 8];
 const POSITION = ["x", "y", "z"], COLOUR = ["f_dc_0", "f_dc_1", "f_dc_2"];
 const SCALE = ["scale_0", "scale_1", "scale_2"];
