@@ -1,7 +1,7 @@
 /* fz_camera_list.c - the cameras of ted4dec --render, as a JSON list or a transforms file. Claims:
  * the result is either cameras with sizes, focal lengths and rotations that the renderer accepts,
- * each with a frame, a time in [0, 1], or neither, and printed they are read again as they were; or
- * a message of one line, and no camera.
+ * each with a frame, a time in [0, 1], or neither, and the same cameras when they are printed and
+ * read again; or a message of one line, and no camera.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <string.h>

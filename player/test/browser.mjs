@@ -6,8 +6,7 @@ import { join } from "node:path";
 import { needed } from "./fixture.mjs";
 
 const puppeteer = createRequire(join(needed("TED4_MODULES"), "/"))("puppeteer-core");
-export const NAME = process.env.TED4_BROWSER ?? "chromium";
-const LAUNCH = {
+const BROWSERS = {
   chromium: {
     browser: "chrome", executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", pipe: true,
     args: ["--no-sandbox", "--no-first-run", "--disable-gpu-vsync", "--use-angle=swiftshader",
@@ -19,11 +18,12 @@ const LAUNCH = {
     headless: false, extraPrefsFirefox: { "webgl.force-enabled": true },
   },
 };
+const LAUNCH = BROWSERS[process.env.TED4_BROWSER ?? "chromium"];
 
 const pause = (milliseconds) => new Promise((resolve) => { setTimeout(resolve, milliseconds); });
 
 export class Browser {
-  #browser = puppeteer.launch({ defaultViewport: null, ...LAUNCH[NAME] });
+  #browser = puppeteer.launch({ defaultViewport: null, ...LAUNCH });
 
   // A new tab of that many pixels.
   async page(width, height) {
