@@ -105,6 +105,7 @@ echo '{"frames": 3, "cameras": [{"name": "a", "w": 32, "h": 24,
     "w2c": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 4], [0, 0, 0, 1]]}]}' >"$out/clips/cams.json"
 
 # Through a pipe: what was printed while the video was unpacked, and what by the end.
+rm -f "$out/err" "$out/status"
 (PATH=$out/bin:$PATH "$enc" "$out/clips" --check >/dev/null 2>"$out/err"; echo $? >"$out/status") &
 i=0
 while [ $i -lt 600 ] && ! grep -qs loading "$out/err" && [ ! -e "$out/status" ]; do
