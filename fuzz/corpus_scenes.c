@@ -231,62 +231,66 @@ static void binary_colmap(void)
     corpus_write("colmap", "points.bin", p.bytes, p.n);
 }
 
-/* kind: the first byte of the seed, or PLAIN. */
-static void numpy(const char *group, const char *name, int kind, const char *header,
-                  const double *v, size_t n, int narrow)
+/* A .npy file. kind: the first byte of the seed, or PLAIN; type: as NumPy writes it, <f4 or any
+ * whose numbers have 8 bytes. */
+typedef struct {
+    const char *group, *name;
+    int kind;
+    const char *type, *is_fortran, *shape;
+    const double *v;
+    size_t n;
+} numpy_seed;
+
+static void numpy(const numpy_seed *s)
 {
     record r = { .n = 0 };
+    char header[100];
+    const int size = snprintf(header, sizeof header,
+                              "{'descr': '%s', 'fortran_order': %s, 'shape': %s, }\n", s->type,
+                              s->is_fortran, s->shape);
 
-    if (kind >= 0)
-        put(&r, (uint64_t)kind, 1);
+    if (s->kind >= 0)
+        put(&r, (uint64_t)s->kind, 1);
     put_text(&r, "\x93NUMPY\1\0", 8);
-    put(&r, strlen(header), 2);
-    put_text(&r, header, strlen(header));
-    for (size_t i = 0; i < n; i++)
-        if (narrow)
-            put(&r, ted4_float_bits((float)v[i]), 4);
+    put(&r, (uint64_t)size, 2);
+    put_text(&r, header, (size_t)size);
+    for (size_t i = 0; i < s->n; i++)
+        if (strcmp(s->type, "<f4") == 0)
+            put(&r, ted4_float_bits((float)s->v[i]), 4);
         else
-            put_real(&r, v[i]);
-    corpus_write(group, name, r.bytes, r.n);
+            put_real(&r, s->v[i]);
+    corpus_write(s->group, s->name, r.bytes, r.n);
 }
 
 static void all_numpy(void)
 {
-    static const double row[17] = { 0, 1, 0, 0, 2, 1, 0, 0, 0, 2, 0, 0, -1, 0, 3, 1, 9 };
+    /* Three equal rows of poses_bounds.npy. */
+#define ROW 0, 1, 0, 0, 2, 1, 0, 0, 0, 2, 0, 0, -1, 0, 3, 1, 9
+    static const double rows[51] = { ROW, ROW, ROW };
+#undef ROW
     static const double endless[3] = { 0, NAN, 1 };
-    double two[34], three[51];
+    static const numpy_seed seeds[] = {
+        { "npy", "poses_bounds.npy", PLAIN, "<f8", "False", "(2, 17)", rows, 34 },
+        { "npy", "points.npy", PLAIN, "<f4", "False", "(2, 3)", rows, 6 },
+        { "npy", "trailing.npy", PLAIN, "<f4", "False", "(2, 3)", rows, 7 },
+        { "npy", "fortran.npy", PLAIN, "<f4", "True", "(2, 3)", rows, 6 },
+        { "npy", "one_row.npy", PLAIN, "<f8", "False", "(1, 17)", rows, 17 },
+        { "npy", "three.npy", PLAIN, "<f8", "False", "(3, 17)", rows, 51 },
+        { "npy", "four.npy", PLAIN, "<f8", "False", "(4, 17)", rows, 51 },
+        { "npy", "endless.npy", PLAIN, "<f4", "False", "(1, 3)", endless, 3 },
+        { "npy", "one_axis.npy", PLAIN, "<f4", "False", "(3,)", rows, 3 },
+        { "npy", "integers.npy", PLAIN, "<i8", "False", "(1, 3)", rows, 3 },
+        { "hypernerf", "points.npy", 3, "<f4", "False", "(2, 3)", rows, 6 },
+    };
 
-    for (size_t i = 0; i < 51; i++)
-        three[i] = row[i % 17];
-    memcpy(two, three, sizeof two);
-    numpy("npy", "poses_bounds.npy", PLAIN,
-          "{'descr': '<f8', 'fortran_order': False, 'shape': (2, 17), }\n", two, 34, 0);
-    numpy("npy", "points.npy", PLAIN,
-          "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 3), }\n", row, 6, 1);
-    numpy("npy", "trailing.npy", PLAIN,
-          "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 3), }\n", row, 7, 1);
-    numpy("npy", "fortran.npy", PLAIN,
-          "{'descr': '<f4', 'fortran_order': True, 'shape': (2, 3), }\n", row, 6, 1);
-    numpy("npy", "one_row.npy", PLAIN,
-          "{'descr': '<f8', 'fortran_order': False, 'shape': (1, 17), }\n", row, 17, 0);
-    numpy("npy", "three.npy", PLAIN,
-          "{'descr': '<f8', 'fortran_order': False, 'shape': (3, 17), }\n", three, 51, 0);
-    numpy("npy", "four.npy", PLAIN,
-          "{'descr': '<f8', 'fortran_order': False, 'shape': (4, 17), }\n", three, 51, 0);
-    numpy("npy", "endless.npy", PLAIN,
-          "{'descr': '<f4', 'fortran_order': False, 'shape': (1, 3), }\n", endless, 3, 1);
-    numpy("npy", "one_axis.npy", PLAIN,
-          "{'descr': '<f4', 'fortran_order': False, 'shape': (3,), }\n", row, 3, 1);
+    for (size_t i = 0; i < sizeof seeds / sizeof *seeds; i++)
+        numpy(&seeds[i]);
     corpus_write("npy", "version2.npy",
                  "\x93NUMPY\2\0\x3a\0\0\0{'descr': '<f4', 'fortran_order': False, 'shape': (1, 3)}"
                  "\n\0\0\0\0\0\0\0\0\0\0\0\0",
                  82);
     corpus_write("npy", "cut.npy", "\x93NUMPY\1\0\xff\0{", 11);
     corpus_write("npy", "neither", "not an array", 12);
-    numpy("npy", "integers.npy", PLAIN,
-          "{'descr': '<i8', 'fortran_order': False, 'shape': (1, 3), }\n", row, 3, 0);
-    numpy("hypernerf", "points.npy", 3,
-          "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 3), }\n", row, 6, 1);
 }
 
 static void binary_ply(void)

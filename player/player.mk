@@ -49,12 +49,12 @@ deps-player: deps
 .PHONY: player-wasm player-test player-conformance player-package deps-player
 
 # The page (page/), by esbuild and the packages that player/package-lock.json pins; they lie in the
-# build folder, as do those that only the tests need
-# (player/test/package-lock.json). The licence of PlayCanvas comes first in player.js.
-NPM     = $W/npm
+# build folder, as do those that only the tests need (player/test/package-lock.json). The licence of
+# PlayCanvas comes first in player.js.
+NPM      = $W/npm
 NPM_TEST = $W/npm-test
-ESBUILD = $(NPM)/node_modules/.bin/esbuild --bundle --minify --format=iife --target=es2022 \
-          --log-level=warning
+ESBUILD  = $(NPM)/node_modules/.bin/esbuild --bundle --minify --format=iife --target=es2022 \
+           --log-level=warning
 PAGE_LICENCE = $(NPM)/node_modules/playcanvas/LICENSE
 PAGE_SRC = $(wildcard player/page/*.js player/src/*.js player/adapters/*.js)
 ADAPTERS = $(patsubst %,$W/adapters/%,index.html playcanvas.js spark.js supersplat.js)
