@@ -9,13 +9,8 @@ from .words import signed
 
 def base_of(variant):
     """What a variant is compared with: the whole method; with the choice of capacity
-    (VARIANT_auto), at the preset's full length (VARIANT_long), or with a heavier offset mask
-    (VARIANT_moremask), that with the same."""
-    if variant.endswith("_auto"):
-        return "whole_auto"
-    if variant.endswith("_long"):
-        return "whole_long"
-    return "moremask" if variant.endswith("_moremask") else "whole"
+    (VARIANT_auto), that with the same."""
+    return "whole_auto" if variant.endswith("_auto") else "whole"
 
 
 def curve_of(rows):

@@ -23,9 +23,8 @@ run variant  nomotion   kitchen 1,3     - --set motion=0
 run variant  factorised kitchen 1,3     - --set factorised=1
 run variant  noautoreg  kitchen 1,3     - --set slices=1
 run auto     whole_auto kitchen 1,3     - --capacity auto
-run long     whole_long kitchen 1,3     - --preset medium
+run long     fast       kitchen 1,3     - --preset medium
 run auto+variant factorised_flat_auto kitchen 1,3 - --capacity auto --set factorised=1 --set slices=1
-run long+variant factorised_long      kitchen 1,3 - --preset medium --set factorised=1
 run variant  linscale   kitchen 1       - --set linear_scale=1
 run variant  noprogress kitchen 1,3     - --set progressive=0
 run variant  fullview   kitchen 1,2,3,4 - --set view=2
@@ -49,19 +48,18 @@ run recipe   recipe_concat      kitchen 2 - --set sprouts=0 --set motion=2
 END
 
 # On kitchen the whole method doubles its bytes with each dB, so its curve is a straight line on a
-# logarithmic scale. concat needs 1.5 times the bytes everywhere: +50 %. factorised_flat_auto and
-# factorised_long need 15 and 5 % more than whole_auto and whole_long. inr_paper needs no more bytes
-# than the curve, but four times those of whole_long, and three times its training. inr needs no
-# more at 28 dB and twice the bytes at 30 dB: the mean of the logarithm is that of the square root
-# of 2. noactive needs 2^((p - 27)^3 / 27) times the bytes: the mean of the cubic over 27 to 30 dB
-# is a quarter, 2^0.25 = 1.1892; with straight lines it would be 1.2123. fullview ends in two points
-# close to each other, where one cubic through all four would overshoot; piecewise cubics,
-# integrated numerically by another program, give -1.36 %. nomotion is 2 dB lower at equal bytes.
-# noautoreg and noprogress need 2^0.1 times the bytes: 0.1 dB, less than the 0.25 dB between seeds,
-# so that nothing can be concluded. factorised lacks a run, and the row of linscale was made with
-# other options. On walk concat is the whole method itself, whose curve is bent there: 0 %. At seed
-# 3 concat needs twice the bytes, which is 1 dB. noview has 0.5 dB more at twice the bytes, 0.2 dB
-# more at the same, 0.5 dB less at half of them.
+# logarithmic scale. concat needs 1.5 times the bytes everywhere: +50 %. factorised_flat_auto needs
+# 15 % more than whole_auto. inr_paper needs no more bytes than the curve, but four times those of
+# fast, and three times its training. inr needs no more at 28 dB and twice the bytes at 30 dB: the
+# mean of the logarithm is that of the square root of 2. noactive needs 2^((p - 27)^3 / 27) times
+# the bytes: the mean of the cubic over 27 to 30 dB is a quarter, 2^0.25 = 1.1892; with straight
+# lines it would be 1.2123. fullview ends in two points close to each other, where one cubic through
+# all four would overshoot; piecewise cubics, integrated numerically by another program, give -1.36
+# %. nomotion is 2 dB lower at equal bytes. noautoreg and noprogress need 2^0.1 times the bytes: 0.1
+# dB, less than the 0.25 dB between seeds, so that nothing can be concluded. factorised lacks a run,
+# and the row of linscale was made with other options. On walk concat is the whole method itself,
+# whose curve is bent there: 0 %. At seed 3 concat needs twice the bytes, which is 1 dB. noview has
+# 0.5 dB more at twice the bytes, 0.2 dB more at the same, 0.5 dB less at half of them.
 cat >"$out/rows" <<END
 kitchen-whole-1,k,--own 1,30,800000,600000,4848000
 kitchen-whole-2,k,o,29,400000,300000,2400000
@@ -87,12 +85,10 @@ kitchen-nomotion-3,k,o,27,400000,100000,800000
 kitchen-factorised-1,k,o,30,1000000,100000,800000
 kitchen-whole_auto-1,k,o,30,400000,100000,800000
 kitchen-whole_auto-3,k,o,28,100000,100000,800000
-kitchen-whole_long-1,k,o,30,200000,100000,800000
-kitchen-whole_long-3,k,o,28,50000,100000,800000
+kitchen-fast-1,k,o,30,200000,100000,800000
+kitchen-fast-3,k,o,28,50000,100000,800000
 kitchen-factorised_flat_auto-1,k,o,30,460000,100000,800000
 kitchen-factorised_flat_auto-3,k,o,28,115000,100000,800000
-kitchen-factorised_long-1,k,o,30,210000,100000,800000
-kitchen-factorised_long-3,k,o,28,52500,100000,800000
 kitchen-noautoreg-1,k,o,30,857419,100000,800000
 kitchen-noautoreg-3,k,o,28,214355,100000,800000
 kitchen-noprogress-1,k,o,30,857419,100000,800000
@@ -165,15 +161,14 @@ check mean_of_logarithm "$page" '| +41.4 % (lines) |'
 check cubics "$page" '| +18.9 % (cubic) |' '| -1.4 % (cubic) |'
 check own_base "$page" \
     '`--capacity auto --set factorised=1 --set slices=1`; kitchen: BD-rate +15.0 % (lines)' \
-    '| kitchen-factorised_flat_auto-1 |' '| 460000 | +15.0 % |' \
-    '`--preset medium --set factorised=1`; kitchen: BD-rate +5.0 % (lines)' '| 210000 | +5.0 % |'
+    '| kitchen-factorised_flat_auto-1 |' '| 460000 | +15.0 % |'
 check less_time "$page" \
     '`--set motion=3 --set deform_layers=8`; kitchen: BD-rate -, rate at equal PSNR +0.0 %' \
-    'the steps of preset fast, in less core time | bank better | `--set motion=3 --set deform_layers=8`; kitchen: BD-rate -, rate at equal PSNR +300.0 %, PSNR at equal bytes -; nearest -1.00 dB, +100.0 %; 10 against 30 core minutes: met. Rests on 1 scene, 1 held-out camera (40 pictures), 1 seed | undecided: one scene alone; as first defined: '
+    'the bank with preset fast, in less core time | bank better | `--set motion=3 --set deform_layers=8`; kitchen: BD-rate -, rate at equal PSNR +300.0 %, PSNR at equal bytes -; nearest -1.00 dB, +100.0 %; 10 against 30 core minutes: met. Rests on 1 scene, 1 held-out camera (40 pictures), 1 seed | undecided: one scene alone; as first defined: '
 check equal_bytes "$page" \
     '`--set motion=0`; kitchen: BD-rate -, rate at equal PSNR +300.0 %, PSNR at equal bytes -2.00 dB; nearest +0.00 dB, +300.0 %: met. Rests on 1 scene, 1 held-out camera (40 pictures), 1 seed | undecided: one scene alone; as first defined: met |'
 check missing "$page" '| kitchen-factorised-3 | `--set factorised=1` | 0.004 | not run yet |' \
-    '| hyperprior against factorised prior that keeps the autoregression (the paper has no such row) | factorised costs at least 10 % more rate | - | not run yet |' '54 of 58 wanted runs'
+    '| hyperprior against factorised prior that keeps the autoregression (the paper has no such row) | factorised costs at least 10 % more rate | - | not run yet |' '52 of 56 wanted runs'
 check stale "$page" '| walk-whole-3† | 0.004 |' '| kitchen-whole-2 | 0.002 |' \
     'kitchen: yes, walk: no† | **missed** |' '7 of them older'
 check other_options "$page" \
@@ -239,26 +234,16 @@ steps=$(sed -n 's/.*<polyline points="\([^"]*\)".*/\1/p' "$out/charts/rate.svg" 
 [ "$steps" = right ] && ok chart_positions ||
     fail chart_positions "$(grep polyline "$out/charts/rate.svg")"
 
-grep -q '18,000\|as it was\|as long' "$page" "$out/report.md" &&
-    fail steps "$(grep -h '18,000\|as it was\|as long' "$page" "$out/report.md")" || ok steps
-
 cp "$page" "$out/first.md"
 cp -r "$out/charts" "$out/first-charts"
 make_report && cmp -s "$page" "$out/first.md" &&
     diff -r "$out/charts" "$out/first-charts" >/dev/null && ok same_bytes ||
     fail same_bytes "the second page differs"
 
-# The rows with the steps of a preset are older, so that the preset may have been another; and the
-# large network takes half as long as the bank with those steps, so that less time proves nothing.
+# The large network takes half as long as the bank with preset fast: less time proves nothing.
 cp "$out/sweep.csv" "$out/kept.csv"
 cp "$out/states" "$out/kept_states"
 sed -i '/^kitchen-inr_paper/s/1800$/300/' "$out/sweep.csv"
-sed -i 's/^done \(.*_long-[13]\)$/older \1/' "$out/states"
-make_report || fail run "status $?"
-check steps_as_they_were "$page" \
-    '(those marked † as it was)' \
-    'both with the steps of preset fast, as it was (†) | factorised costs at least'
-sed -i '/^older .*_long/s/older/done/' "$out/states"
 make_report || fail run "status $?"
 check more_time "$page" \
     'nearest -1.00 dB, +100.0 %; 10 against 5 core minutes: undecided (not in less time). Rests'
@@ -298,7 +283,7 @@ if make_report 2>/dev/null || ! cmp -s "$page" "$out/first.md"; then fail malfor
 rm "$out/sweep.csv" "$out/pages/raster.md"
 : >"$out/states"
 make_report || fail empty "status $?"
-check empty "$page" '0 of 58 wanted runs' \
+check empty "$page" '0 of 56 wanted runs' \
     '| 8 | forward plus backward, 100,000 Gaussians, 480x270, two cores | at most 20 ms (aim 12); 1 to 2 threads at least 1.8x; bits equal | - | not run yet |'
 # Stage 1 with time discarded by a probe and a rollback, then stage 2 in a separate log.
 line() {

@@ -13,18 +13,17 @@ from .over_scenes import Judged, add_bar
 FIRST = "kitchen"               # the scene on which the bars were first defined
 STILL = ("still", "chair")      # where nothing moves, parts that model time are worth nothing
 PRIOR = "factorised costs at least 10 % more rate"
-# what: "{then}" stands where rows marked † have the steps that a preset had then. against: what the
-# variant is compared with, which has to take less core time of training (of the largest files); by
-# default the variant's base. first: what makes the bar as it was first defined, of the runs and the
-# scene.
+# against: what the variant is compared with, which has to take less core time of training (of the
+# largest files); by default the variant's base. first: what makes the bar as it was first defined,
+# of the runs and the scene.
 Bar = namedtuple("Bar", "variant what limit first against", defaults=(None, None))
 BARS = (
     Bar("concat", "bank against concat", "bank better", first_bars.concat),
     Bar("inr_paper", "bank against inr, a network as large as the paper's (8 layers of 256)",
         "bank better", first_bars.inr),
     Bar("inr_paper",
-        "the same inr against the bank with the steps of preset fast{then}, in less core time",
-        "bank better", first_bars.inr_paper, "whole_long"),
+        "the same inr against the bank with preset fast, in less core time", "bank better",
+        first_bars.inr_paper, "fast"),
     Bar("inr", "bank against inr, layers as wide as F_deform's (the paper has no such row)",
         "bank better", first_bars.inr),
     Bar("factorised_flat",
@@ -37,8 +36,6 @@ BARS = (
         "paper has no such row)", PRIOR, first_bars.prior),
     Bar("factorised_auto", "hyperprior against factorised prior with autoregression, both with the "
         "choice of capacity, as by default", PRIOR, first_bars.prior),
-    Bar("factorised_long", "hyperprior against factorised prior with autoregression, both with "
-        "the steps of preset fast{then}", PRIOR, first_bars.prior),
     Bar("noactive", "no activation", "costs rate or quality"),
     Bar("noprogress", "no progressive training", "costs quality", first_bars.noprogress),
     Bar("static", "no deformation, nor activation, as in the paper's row",
@@ -82,9 +79,7 @@ def variant_bar(report, bar):
     scenes = scenes_of(runs, bar.variant) or [FIRST]
     there = [scene for scene in scenes if has_rows(runs, scene, bar.variant, base)]
     patterns = " ".join(f"'{scene}-{one}-*'" for scene in scenes for one in (bar.variant, base))
-    rows = [run for scene in there for run in runs.of(scene, base)]
-    what = bar.what.format(then=", as it was (†)" if mark(rows) else "")
-    add_bar(report, what, bar.limit, [judged_on(report, scene, bar, base) for scene in there],
+    add_bar(report, bar.what, bar.limit, [judged_on(report, scene, bar, base) for scene in there],
             [scene for scene in scenes if scene not in there], sweep(patterns),
             bar.first and bar.first(runs, FIRST))
 

@@ -12,9 +12,8 @@ from .rate import KB
 FAMILIES = {
     "Deformation": "concat inr inr_paper nomotion static plain",
     "Time": "noactive noprogress notempmask hardmask nosprouts recipe",
-    "Prior": "factorised factorised_flat factorised_auto factorised_flat_auto factorised_long "
-             "factorised_moremask factorised_flat_moremask",
-    "Rate": "noautoreg nooffmask moremask linscale",
+    "Prior": "factorised factorised_flat factorised_auto factorised_flat_auto",
+    "Rate": "noautoreg nooffmask linscale",
     "Colour": "noview fullview nocolour",
     "Other": "",
 }
@@ -34,7 +33,7 @@ PAPER = {
 def section(report):
     page, runs = report.tables, report.runs
     page.heading("One thing changed")
-    explain(page, runs)
+    explain(page)
     for scene in runs.scenes:
         if variants_of(runs, scene):
             table(report, scene)
@@ -42,7 +41,7 @@ def section(report):
     overview(report)
 
 
-def explain(page, runs):
+def explain(page):
     page.prose("""Each variant is trained separately and measured on its own file. *Rate at equal
         PSNR* and *PSNR at equal bytes* compare it with the curve of the whole method at four λ,
         which is interpolated linearly, logarithm of bytes over PSNR; "-" stands where that curve
@@ -59,19 +58,11 @@ def explain(page, runs):
     page.prose("""*factorised_flat* has one Gaussian per component for all anchors; *factorised*
         also keeps the autoregression. *inr* has layers as wide as those of the whole
         method's F_deform, *inr_paper* as many and as wide as the paper's. *hardmask* gives the
-        temporal mask ten times its weight, and *moremask* gives the offset mask more weight than
-        the default. *recipe* leaves out what the paper does not have: multi-view seeding (sprouts),
-        short-lived initial points (transients) and the static-scene test (probe).
-        Only the rows *_auto* choose their capacity; they are compared with the whole method with
-        that choice, *whole_auto*, and the rows *factorised_..._moremask* with *moremask*.
-        *factorised_long* and *whole_long* have the steps of preset fast"""
-        + (" (those marked † as it was)" if long_mark(runs) else "")
-        + "; those of the other rows are among the [options](#commands) behind them.")
-
-
-def long_mark(runs):
-    """Of rows with the steps of a preset: earlier sources may have given it others."""
-    return mark([run for run in runs.all if run.variant.endswith("_long")])
+        temporal mask ten times its weight. *recipe* leaves out what the paper does not have:
+        multi-view seeding (sprouts), short-lived initial points (transients) and the static-scene
+        test (probe). Only the rows *_auto* choose their capacity; they are compared with the whole
+        method with that choice, *whole_auto*. The numbers of steps are among the
+        [options](#commands) behind the rows.""")
 
 
 def variants_of(runs, scene):
