@@ -32,7 +32,8 @@ LEVELED = $(addprefix ref-decoder/render/,project.c blend.c) \
           splat/decode_fwd.c splat/decode_bwd.c splat/view_colours.c splat/chain.c \
           splat/effective_layer.c \
           rate/rate_fwd.c rate/rate_bwd.c rate/rate_row.c rate/rate_decoded.c \
-          model/quantise_block.c math/adam_step.c loss/loss_passes.c loss/camera_colour_bands.c)
+          model/quantise_block.c math/adam_step.c densify/sweep_depths.c loss/loss_passes.c \
+          loss/camera_colour_bands.c)
 # Rows are short and may lie anywhere: gcc would take one lane at a time until a store is aligned,
 # and clang has no such option.
 NO_PEELING = --param=vect-max-peeling-for-alignment=0

@@ -5,12 +5,19 @@ $B/bench/bench_raster.o: FPFLAGS = $(BENCH_FREE)
 $B/bench/bench_raster: $B/bench/bench_raster.o $B/ref-decoder/tool/threads.o $(ENC_LIB)
 	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ $(LIBS)
 
+$B/bench/bench_seeding.o: FPFLAGS = $(BENCH_FREE)
+$B/bench/bench_seeding: $B/bench/bench_seeding.o $(ENC_LIB)
+	$(CC) -fopenmp $(LDFLAGS) $^ -o $@ $(LIBS)
+
 KEEP = MAKE_TARGET=$@ CC='$(CC)' sh bench/keep.sh
 
-# These three print their tables and keep them in bench/raster.md, bench/render.md and
-# bench/train.md.
+# These four print their tables and keep them in bench/raster.md, bench/seeding.md, bench/render.md
+# and bench/train.md.
 bench-raster: $B/bench/bench_raster
 	$(KEEP) bench/raster.md $B/bench/bench_raster
+
+bench-seeding: $B/bench/bench_seeding
+	$(KEEP) bench/seeding.md $B/bench/bench_seeding
 
 $B/bench/bench_render.o: FPFLAGS = $(BENCH_FREE)
 $B/bench/bench_render: $B/bench/bench_render.o $B/ref-decoder/tool/threads.o $(DEC_LIB)
@@ -72,7 +79,7 @@ bench-scale: $B/bench/bench_scale $B/bench/phases $B/ted4scene $(if $(KITCHEN),,
 bench-memory: $B/ted4enc $B/ted4scene
 	TED4_BUILD=$B bench/memory.sh $(MEMORY_RUNS)
 
-.PHONY: bench-raster bench-render bench-train bench-scale bench-memory
+.PHONY: bench-raster bench-seeding bench-render bench-train bench-scale bench-memory
 
 # Programs on the decoded file: what the integer entropy model and the range coder cost; how long
 # anchors live. rate_check is compiled as freely as it may be, for it measures the speed of

@@ -36,7 +36,7 @@ ref-encoder/train/loss      base norm recon render math data $rooms_2
 ref-encoder/train/rate      base norm recon render math kernel $rooms_2
 ref-encoder/train/pose      base norm render math data $rooms_2
 ref-encoder/train/state     base norm recon data $rooms_3
-ref-encoder/train/densify   math $rooms_4
+ref-encoder/train/densify   render math $rooms_4
 ref-encoder/train/resize    norm math $rooms_4
 ref-encoder/train/monitor   math $rooms_5
 ref-encoder/train/step      base norm recon math write $rooms_6

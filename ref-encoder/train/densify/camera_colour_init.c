@@ -13,9 +13,9 @@
 #include <string.h>
 
 #include "math/elementary.h"
-#include "photo_votes.h"
 #include "train/loss/colour_fit.h"
 #include "train/model/normalise.h"
+#include "view_geometry.h"
 
 /* At most so many pictures of a camera are used. What the camera sees at a point is their median,
  * channel by channel. Odd. */

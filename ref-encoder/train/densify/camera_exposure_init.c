@@ -8,8 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "photo_votes.h"
 #include "train/model/normalise.h"
+#include "view_geometry.h"
 
 /* At most so many pictures of a camera, and points, are used; more are thinned out evenly. */
 enum { MOST_PICTURES = 64, MOST_POINTS = 2048 };

@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "photo_votes.h"
 #include "train/state/picture.h"
+#include "view_geometry.h"
 
 /* Where the model renders less opacity than this, nothing is known about the depth. */
 #define OPAQUE 0.5f
@@ -153,6 +153,9 @@ int ted4_cell_of(const ted4_cell_view *v, const float p[3], int *column, int *ro
 
 void ted4_cell_point(const ted4_cell_view *v, int column, int row, float z, float p[3])
 {
-    ted4_view_point(&v->view, middle(column, v->step, v->view.width),
-                    middle(row, v->step, v->view.height), z, p);
+    float ray[2];
+
+    ted4_view_ray(&v->view, middle(column, v->step, v->view.width),
+                  middle(row, v->step, v->view.height), ray);
+    ted4_ray_point(&v->view, ray, z, p);
 }

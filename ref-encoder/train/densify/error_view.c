@@ -7,8 +7,8 @@
 #include <string.h>
 
 #include "math/compare.h"
-#include "photo_votes.h"
 #include "train/state/picture.h"
+#include "view_geometry.h"
 
 /* The tested depths begin and end at these multiples of the range of depths that contains 96 % of
  * the anchors in a view. */
@@ -19,15 +19,6 @@
 int ted4_view_spacing(int width)
 {
     return (int)fmaxf(1.0f, roundf(TED4_VIEW_SPACING * (float)width));
-}
-
-void ted4_view_point(const ted4_view *v, int column, int row, float z, float p[3])
-{
-    const float c[3] = { ((float)column + 0.5f - v->cx) / v->fx * z - v->t[0],
-                         ((float)row + 0.5f - v->cy) / v->fy * z - v->t[1], z - v->t[2] };
-
-    for (int k = 0; k < 3; k++)
-        p[k] = v->R[k] * c[0] + v->R[3 + k] * c[1] + v->R[6 + k] * c[2];
 }
 
 /* Sets the range of depths from the anchors in the view. Returns 0, or -1 if memory ran out. */

@@ -28,7 +28,4 @@ void ted4_error_view_close(ted4_error_view *e);
 /* Returns the distance of the tested pixels of a picture, in pixels, at least 1. */
 int ted4_view_spacing(int width);
 
-/* Computes the point p, normalised space, at depth z on the ray through a pixel's centre. */
-void ted4_view_point(const ted4_view *v, int column, int row, float z, float p[3]);
-
 #endif

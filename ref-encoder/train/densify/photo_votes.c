@@ -9,6 +9,7 @@
 
 #include "math/elementary.h"
 #include "train/state/picture.h"
+#include "view_geometry.h"
 
 /* MUST_AGREE: the share of the cameras that must agree. NEAR_BEST: a frame counts if its agreement
  * is at least this share of the best frame's. */

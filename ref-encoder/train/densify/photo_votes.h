@@ -27,26 +27,6 @@ static inline int ted4_colour_agrees(const uint8_t a[3], const uint8_t b[3])
     return ted4_colour_far(a, b) < 3 * TED4_COLOUR_NEAR;
 }
 
-/* Projects p, a point in normalised space, into a view. Fills the pixel number (row major) and the
- * depth. Returns 0 if the point lies outside the picture, else 1. */
-static inline int ted4_view_pixel(const ted4_view *v, const float p[3], size_t *pixel, float *depth)
-{
-    const float z = v->R[6] * p[0] + v->R[7] * p[1] + v->R[8] * p[2] + v->t[2];
-
-    if (z <= v->near_z)
-        return 0;
-    const float x = v->fx * (v->R[0] * p[0] + v->R[1] * p[1] + v->R[2] * p[2] + v->t[0]) / z +
-                    v->cx;
-    const float y = v->fy * (v->R[3] * p[0] + v->R[4] * p[1] + v->R[5] * p[2] + v->t[1]) / z +
-                    v->cy;
-
-    if (!(x >= 0 && y >= 0 && x < (float)v->width && y < (float)v->height))
-        return 0;
-    *pixel = (size_t)y * (size_t)v->width + (size_t)x;
-    *depth = z;
-    return 1;
-}
-
 typedef struct {
     const float *point;    /* borrowed: [n][3], normalised space */
     const uint8_t *colour; /* borrowed: [n][3] */

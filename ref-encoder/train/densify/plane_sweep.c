@@ -8,20 +8,17 @@
 
 #include "train/math/voxel_set.h"
 #include "math/elementary.h"
-#include "photo_votes.h"
 #include "error_view.h"
+#include "photo_votes.h"
+#include "sweep_depths.h"
+#include "view_geometry.h"
 
 /* Distance of consecutive depths: at most so many pixels in any other picture. */
 #define PIXELS_APART 1.5f
 enum { FEWEST_DEPTHS = 16, MOST_DEPTHS = 512 };
-/* One picture of the frame. */
-typedef struct {
-    ted4_error_view at;
-    int depths; /* number of tested depths */
-} sweep_view;
 
 typedef struct {
-    const sweep_view *views;
+    const ted4_sweep_view *views; /* borrowed: [n] pictures of the frame */
     size_t n, self;
     int step;          /* distance of the tested pixels */
     ted4_place *found; /* [rows][columns], with score 0 where nothing was found */
@@ -30,7 +27,7 @@ typedef struct {
 
 /* Returns approximately by how many pixels a point at inverse depth 1/z moves in the other picture
  * when 1/z changes by 1. */
-static float parallax(const ted4_error_view *a, const ted4_error_view *b)
+static float parallax(const ted4_sweep_view *a, const ted4_sweep_view *b)
 {
     float square = 0;
 
@@ -39,87 +36,74 @@ static float parallax(const ted4_error_view *a, const ted4_error_view *b)
     return sqrtf(square) * fmaxf(b->view.fx, b->view.fy);
 }
 
-static void count_depths(sweep_view *views, size_t n, size_t self)
+static void count_depths(ted4_sweep_view *views, size_t n, size_t self)
 {
     float farthest = 0;
 
     for (size_t i = 0; i < n; i++)
-        farthest = fmaxf(farthest, parallax(&views[self].at, &views[i].at));
+        farthest = fmaxf(farthest, parallax(&views[self], &views[i]));
 
-    const float range = 1.0f / views[self].at.nearest - 1.0f / views[self].at.farthest;
+    const float range = 1.0f / views[self].nearest - 1.0f / views[self].farthest;
     const float wanted = ceilf(range * farthest / PIXELS_APART);
 
     views[self].depths = (int)fmaxf(FEWEST_DEPTHS, fminf(wanted, MOST_DEPTHS));
 }
 
-/* Returns how well the other picture confirms the point, in (0, 1], or 0 if it does not.
- * *observed: whether the point lies in that picture. */
-static float confirm(const ted4_error_view *e, const float p[3], const uint8_t colour[3],
-                     int *observed)
+void ted4_sweep_depths(const ted4_sweep_ray *r, int first, ted4_swept_depths *d)
 {
-    size_t pixel;
-    float depth;
-
-    *observed = ted4_view_pixel(&e->view, p, &pixel, &depth);
-    if (!*observed || e->error[pixel] < TED4_MISSING / 2 ||
-        !ted4_colour_agrees(e->rgb + 3 * pixel, colour))
-        return 0.0f;
-    return 1.0f -
-           (float)ted4_colour_far(e->rgb + 3 * pixel, colour) / (3.0f * TED4_COLOUR_NEAR + 1.0f);
+    TED4_IN_USE(ted4_sweep_depths)(r, first, d);
 }
 
-/* Finds the depth of a pixel that the other cameras confirm best. At least half of those that see
- * the point must confirm it. */
-static void sweep(const search_job *j, int column, int row, ted4_place *best)
+/* Takes the best of some depths, if it is better than what was found. At least half of the cameras
+ * that see a point must confirm it. error: of the pixel, in (0, 1]; step: distance of the tested
+ * pixels, seen with focal length fx. */
+static void take_best(const ted4_swept_depths *d, float error, float step, float fx,
+                      ted4_place *best)
 {
-    const ted4_error_view *own = &j->views[j->self].at;
-    const size_t pixel = (size_t)row * (size_t)own->view.width + (size_t)column;
-    const uint8_t *colour = own->rgb + 3 * pixel;
-    const int depths = j->views[j->self].depths;
+    for (int k = 0; k < TED4_DEPTHS; k++) {
+        const float score = d->score[k] * error;
 
-    for (int k = 0; k < depths; k++) {
-        const float part = (float)k / (float)(depths - 1);
-        const float z = 1.0f / ((1.0f - part) / own->nearest + part / own->farthest);
-        float p[3], score = 0;
-        int seen = 0, agree = 0;
-
-        ted4_view_point(&own->view, column, row, z, p);
-        if (fabsf(p[0]) > 1.0f || fabsf(p[1]) > 1.0f || fabsf(p[2]) > 1.0f)
+        if (d->agree[k] + 1 < TED4_CAMERAS_NEEDED || 2 * d->agree[k] < d->seen[k] ||
+            score <= best->score)
             continue;
-        for (size_t i = 0; i < j->n; i++) {
-            int observed;
-
-            if (i == j->self)
-                continue;
-            const float s = confirm(&j->views[i].at, p, colour, &observed);
-
-            seen += observed;
-            agree += s > 0;
-            score += s;
-        }
-        score *= (float)own->error[pixel] / 255.0f;
-        if (agree + 1 < TED4_CAMERAS_NEEDED || 2 * agree < seen || score <= best->score)
-            continue;
-        memcpy(best->point, p, sizeof p);
-        best->size = z * (float)j->step / own->view.fx;
+        for (int c = 0; c < 3; c++)
+            best->point[c] = d->p[c][k];
+        best->size = d->z[k] * step / fx;
         best->score = score;
     }
-    memcpy(best->colour, colour, 3);
+}
+
+/* Finds the depth of a pixel that the other cameras confirm best. */
+static void sweep(const search_job *j, int column, int row, ted4_place *best)
+{
+    const ted4_sweep_view *own = &j->views[j->self];
+    const ted4_view *view = &own->view;
+    const uint32_t pixel = own->pixel[(size_t)row * (size_t)view->width + (size_t)column];
+    ted4_sweep_ray ray = { .views = j->views, .n = j->n, .self = j->self, .pixel = pixel };
+    ted4_swept_depths d;
+
+    ted4_view_ray(view, column, row, ray.ray);
+    for (int k = 0; k < own->depths; k += TED4_DEPTHS) {
+        ted4_sweep_depths(&ray, k, &d);
+        take_best(&d, (float)(pixel >> 24) / 255.0f, (float)j->step, view->fx, best);
+    }
+    for (int c = 0; c < 3; c++)
+        best->colour[c] = (uint8_t)(pixel >> 8 * c);
 }
 
 static void search_row(void *arg, size_t r)
 {
     const search_job *j = arg;
-    const ted4_error_view *own = &j->views[j->self].at;
-    const int row = (int)r * j->step + j->step / 2;
+    const ted4_sweep_view *own = &j->views[j->self];
+    const int width = own->view.width, row = (int)r * j->step + j->step / 2;
 
     for (int c = 0; c < j->columns; c++) {
         ted4_place *place = &j->found[r * (size_t)j->columns + (size_t)c];
         const int column = c * j->step + j->step / 2;
 
         memset(place, 0, sizeof *place);
-        if (row < own->view.height && column < own->view.width &&
-            own->error[(size_t)row * (size_t)own->view.width + (size_t)column] >= TED4_MISSING)
+        if (row < own->view.height && column < width &&
+            own->pixel[(size_t)row * (size_t)width + (size_t)column] >> 24 >= TED4_MISSING)
             sweep(j, column, row, place);
     }
 }
@@ -141,10 +125,10 @@ static int put(ted4_places *l, const ted4_place *p)
 
 /* Adds the places that one camera of the frame misses to the list. Returns 0, or -1 if memory ran
  * out. */
-static int search_view(const ted4_trainer *t, sweep_view *views, size_t n, size_t self,
+static int search_view(const ted4_trainer *t, ted4_sweep_view *views, size_t n, size_t self,
                        uint32_t frame, ted4_places *list)
 {
-    const int width = views[self].at.view.width, height = views[self].at.view.height;
+    const int width = views[self].view.width, height = views[self].view.height;
     const int step = ted4_view_spacing(width);
     const size_t columns = (size_t)((width + step - 1) / step),
                  rows = (size_t)((height + step - 1) / step);
@@ -201,9 +185,30 @@ static int thin(ted4_places *l, size_t first, size_t most)
     return 0;
 }
 
+/* Opens a training picture; its pixels are freed by the caller, in either case. Returns 0, or -1
+ * with t->message filled. */
+static int open_view(ted4_trainer *t, size_t item, ted4_sweep_view *s)
+{
+    ted4_error_view e = { 0 };
+    int bad = ted4_error_view_open(t, item, &e) != 0;
+    const size_t n = (size_t)e.view.width * (size_t)e.view.height;
+
+    if (!bad && (s->pixel = malloc(n * sizeof *s->pixel)) == NULL)
+        bad = ted4_trainer_fail(t, "no memory to look for what is missing");
+    for (size_t i = 0; !bad && i < n; i++)
+        s->pixel[i] = e.rgb[3 * i] | (uint32_t)e.rgb[3 * i + 1] << 8 |
+                      (uint32_t)e.rgb[3 * i + 2] << 16 | (uint32_t)e.error[i] << 24;
+    s->view = e.view;
+    memcpy(s->centre, e.centre, sizeof s->centre);
+    s->nearest = e.nearest;
+    s->farthest = e.farthest;
+    ted4_error_view_close(&e);
+    return bad ? -1 : 0;
+}
+
 /* Opens the training pictures of a frame in views[], or only counts them if views is NULL. Returns
  * their number. *bad becomes 1, with t->message filled, on failure. */
-static size_t open_views(ted4_trainer *t, uint32_t frame, sweep_view *views, int *bad)
+static size_t open_views(ted4_trainer *t, uint32_t frame, ted4_sweep_view *views, int *bad)
 {
     size_t n = 0;
 
@@ -213,7 +218,7 @@ static size_t open_views(ted4_trainer *t, uint32_t frame, sweep_view *views, int
         if (p->is_test || p->frame != frame)
             continue;
         if (views != NULL)
-            *bad = ted4_error_view_open(t, i, &views[n].at) != 0;
+            *bad = open_view(t, i, &views[n]) != 0;
         n++;
     }
     return n;
@@ -228,7 +233,7 @@ int ted4_mv_seed_search(ted4_trainer *t, uint32_t frame, ted4_places *list)
     if (n < TED4_CAMERAS_NEEDED)
         return 0;
 
-    sweep_view *views = calloc(n, sizeof *views);
+    ted4_sweep_view *views = calloc(n, sizeof *views);
 
     if (views == NULL)
         return ted4_trainer_fail(t, "no memory to look for what is missing");
@@ -244,7 +249,7 @@ int ted4_mv_seed_search(ted4_trainer *t, uint32_t frame, ted4_places *list)
     if (!bad && thin(list, first, share > 0 ? share : 1) != 0)
         bad = ted4_trainer_fail(t, "no memory to look for what is missing");
     for (size_t i = 0; i < n; i++)
-        ted4_error_view_close(&views[i].at);
+        free(views[i].pixel);
     free(views);
     return bad ? -1 : 0;
 }
