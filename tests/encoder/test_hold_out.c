@@ -118,6 +118,7 @@ static void test_pictures(void **state)
     for (int i = 0; i < 3; i++)
         held(&f, good + i, 1, "train/r_001", NULL);
     held(&f, good, 3, "train/r_001", NULL);
+    held(&f, (const char *const[]) { "r_001_02", "r_002_00" }, 2, "train/r_001", "train/r_002");
     refused(&f, "r_000_00", "pictures of several cameras are called so");
     refused(&f, "001_02",
             "expected one of: train/r_000_00.png, r_001_00.png, r_002_00.png, test/r_000_00.png");

@@ -16,9 +16,11 @@ enum { VIEWS = 6, WIDTH = 37, HEIGHT = 23, DEPTHS = 45, RAYS = 400 };
 
 static ted4_sweep_view views[VIEWS];
 
-/* A camera about two units before the cube, which looks at it; the last one looks away. */
-static void aim(ted4_sweep_view *s, random_source *r, int away)
+/* A camera about two units before the cube, which looks at it; the last one looks away. The tested
+ * depths of every other one end within the cube, those of the others beyond it. */
+static void aim(ted4_sweep_view *s, random_source *r, int i)
 {
+    const int away = i == VIEWS - 1;
     const float a = random_float(r, -0.5f, 0.5f), c = cosf(a), d = sinf(a);
     const float R[9] = { c, 0, d, 0, 1, 0, -d, 0, c };
 
@@ -34,7 +36,7 @@ static void aim(ted4_sweep_view *s, random_source *r, int away)
     s->view.t[1] = random_float(r, -0.3f, 0.3f);
     s->view.t[2] = away ? -2.0f : random_float(r, 1.0f, 2.5f);
     s->nearest = 0.3f;
-    s->farthest = 5.0f; /* both ends lie outside the cube */
+    s->farthest = i % 2 ? 1.5f : 5.0f;
     s->depths = DEPTHS;
 }
 
@@ -58,7 +60,7 @@ static int set_up(void **state)
     for (int i = 0; i < VIEWS; i++) {
         views[i].pixel = malloc(sizeof(uint32_t) * WIDTH * HEIGHT);
         assert_non_null(views[i].pixel);
-        aim(&views[i], &r, i == VIEWS - 1);
+        aim(&views[i], &r, i);
         paint(&views[i], &r);
     }
     return 0;
