@@ -163,9 +163,11 @@ make_stage1() {
 }
 
 # Sources that are known to write the same bytes for the scene $where as $1, by the table equal.csv
-# among the results, with blanks around.
+# among the results, or that of bench/, with blanks around.
 equal_to() {
-    [ ! -f "$results/equal.csv" ] || awk -F, -v now="$1" -v where="$where" '
+    equal=$results/equal.csv
+    [ -f "$equal" ] || equal=bench/equal.csv
+    awk -F, -v now="$1" -v where="$where" '
         NR > 1 && ($4 == "" || where !~ "^(" $4 ")$") { from[NR] = $1; to[NR] = $2 }
         END {
             known[now] = 1
@@ -179,7 +181,7 @@ equal_to() {
                 if (known[k] && k != now)
                     printf " %s", k
             print " "
-        }' "$results/equal.csv"
+        }' "$equal"
 }
 
 # Was the row with the key $had made by other sources, which are known to write the same bytes?
