@@ -15,11 +15,16 @@ uint32_t ted4_most_cameras(const ted4_dataset *d);
 /* Two colours agree if they differ by less than this many steps of 255, averaged over the
  * channels. */
 #define TED4_COLOUR_NEAR 28
+
+/* Returns how far apart two colours with these differences are, summed over the channels. */
+static inline int ted4_channels_far(int r, int g, int b)
+{
+    return (r < 0 ? -r : r) + (g < 0 ? -g : g) + (b < 0 ? -b : b);
+}
+
 static inline int ted4_colour_far(const uint8_t a[3], const uint8_t b[3])
 {
-    const int r = a[0] - b[0], g = a[1] - b[1], l = a[2] - b[2];
-
-    return (r < 0 ? -r : r) + (g < 0 ? -g : g) + (l < 0 ? -l : l);
+    return ted4_channels_far(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }
 
 static inline int ted4_colour_agrees(const uint8_t a[3], const uint8_t b[3])

@@ -39,14 +39,12 @@ static inline int place(const ted4_sweep_ray *r, int first, ted4_swept_depths *d
     return any;
 }
 
-/* Returns the distance of two colours, as ted4_colour_far, of packed pixels. */
+/* Returns ted4_colour_far of packed pixels. */
 static inline int32_t far_apart(uint32_t a, uint32_t b)
 {
-    const int32_t red = (int32_t)(a & 255) - (int32_t)(b & 255),
-                  green = (int32_t)(a >> 8 & 255) - (int32_t)(b >> 8 & 255),
-                  blue = (int32_t)(a >> 16 & 255) - (int32_t)(b >> 16 & 255);
-
-    return (red < 0 ? -red : red) + (green < 0 ? -green : green) + (blue < 0 ? -blue : blue);
+    return ted4_channels_far((int)(a & 255) - (int)(b & 255),
+                             (int)(a >> 8 & 255) - (int)(b >> 8 & 255),
+                             (int)(a >> 16 & 255) - (int)(b >> 16 & 255));
 }
 
 /* Adds what another picture says. */
