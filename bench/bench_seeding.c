@@ -87,7 +87,7 @@ static void report(size_t n, int width, int height, int depths)
         }
     printf("%zu pictures of %dx%d, %d depths\n", n, width, height, depths);
     for (ted4_level level = most; level >= TED4_LEVEL_BASE; level--)
-        printf("  %-4s %6.2f ns a depth and picture   ratio %.2f\n", ted4_level_name(level),
+        printf("  %-4s %6.2f ns per depth and picture   ratio %.2f\n", ted4_level_name(level),
                best[level], best[level] / best[most]);
     for (size_t i = 0; i < n; i++)
         free(f.views[i].pixel);
