@@ -28,6 +28,14 @@
 #include "write/encode.h"
 #include "write/gauss_put.h"
 
+#if defined(__AVX512F__)
+enum { VECTOR = 64 }; /* bytes */
+#elif defined(__AVX__)
+enum { VECTOR = 32 };
+#else
+enum { VECTOR = 16 };
+#endif
+
 enum { BLOCK = TED4_PRIOR_BLOCK, SUBSTREAMS = 24 };
 
 #define SQRT_HALF 0.70710678118654752440

@@ -3,27 +3,31 @@
  * functions of that type. The networks are those of spec 7.1, with the weights that the file
  * stores, sine and cosine of the exact position, and contexts k STEP[Qi]; nothing is rounded to
  * integers or saturated. Anchors are processed in blocks of 64, arrays are [channel][64]; sums run
- * over the inputs in order, so that lanes are vectors.
+ * over the inputs in order, so that lanes are vectors. A vector is as wide as the machine's, since
+ * gcc splits wider ones through memory, and a sum takes eight of them at most, which stay in
+ * registers.
  * SPDX-License-Identifier: BSD-2-Clause */
 
-typedef REAL NAME(vec) __attribute__((vector_size(64), may_alias, aligned(sizeof(REAL))));
+typedef REAL NAME(vec) __attribute__((vector_size(VECTOR), may_alias, aligned(sizeof(REAL))));
 
 /* Evaluates a layer: y [out][64] from x [in][64]. v: weights [out][in], then biases. ReLU follows
  * all layers but the last. */
 static void NAME(layer)(const float *v, unsigned in, unsigned out, int last, const REAL *x, REAL *y)
 {
-    enum { LANES = 64 / sizeof(REAL), VECS = BLOCK / LANES };
+    enum { LANES = VECTOR / sizeof(REAL), VECS = BLOCK / LANES < 8 ? BLOCK / LANES : 8 };
 
     for (unsigned o = 0; o < out; o++, y += BLOCK) {
-        const REAL *column = x;
-        NAME(vec) sum[VECS];
+        for (int first = 0; first < BLOCK; first += VECS * LANES) {
+            const REAL *column = x + first;
+            NAME(vec) sum[VECS];
 
-        for (int i = 0; i < VECS; i++)
-            sum[i] = (NAME(vec)) { 0 } + (REAL)v[(size_t)in * out + o];
-        for (unsigned j = 0; j < in; j++, column += BLOCK)
             for (int i = 0; i < VECS; i++)
-                sum[i] += (REAL)v[(size_t)o * in + j] * *(const NAME(vec) *)(column + i * LANES);
-        memcpy(y, sum, sizeof sum);
+                sum[i] = (NAME(vec)) { 0 } + (REAL)v[(size_t)in * out + o];
+            for (unsigned j = 0; j < in; j++, column += BLOCK)
+                for (int i = 0; i < VECS; i++)
+                    sum[i] += (REAL)v[(size_t)o * in + j] * *(const NAME(vec) *)(column + i * LANES);
+            memcpy(y + first, sum, sizeof sum);
+        }
         for (int a = 0; a < BLOCK; a++)
             y[a] = last || y[a] > 0 ? y[a] : 0;
     }
