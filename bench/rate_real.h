@@ -23,9 +23,12 @@ static void NAME(layer)(const float *v, unsigned in, unsigned out, int last, con
 
             for (int i = 0; i < VECS; i++)
                 sum[i] = (NAME(vec)) { 0 } + (REAL)v[(size_t)in * out + o];
-            for (unsigned j = 0; j < in; j++, column += BLOCK)
+            for (unsigned j = 0; j < in; j++, column += BLOCK) {
+                const REAL w = (REAL)v[(size_t)o * in + j];
+
                 for (int i = 0; i < VECS; i++)
-                    sum[i] += (REAL)v[(size_t)o * in + j] * *(const NAME(vec) *)(column + i * LANES);
+                    sum[i] += w * *(const NAME(vec) *)(column + i * LANES);
+            }
             memcpy(y + first, sum, sizeof sum);
         }
         for (int a = 0; a < BLOCK; a++)
