@@ -121,6 +121,8 @@ bench-compact: $B/bench/compact
 $B/bench/to_jpeg: $B/bench/to_jpeg.o
 	$(CC) $(LDFLAGS) $^ -o $@ $(LIBS)
 
+$B/tests/tools/test_rate_check: | $(PROGS) $B/bench/rate_check
+
 # make rate-check FILE=x.ted4
 rate-check: $B/bench/rate_check
 	$B/bench/rate_check $(FILE)
