@@ -125,8 +125,8 @@ def speed_section(report, page):
 
 def picture_section(report, page):
     page.heading("Pictures")
-    page.prose("""Each sheet shows ground truth, rendering and error (5 times) of held-out pictures
-        at three times; the rendering is from the decoded file ([all
+    page.prose("""Each sheet shows ground truth, rendering and error (5 times) of four
+        held-out pictures; the rendering is from the decoded file ([all
         columns](report-tables.md#pictures)).""")
     if report.runs.find(SHOWN).has():
         page.say()

@@ -20,8 +20,8 @@ def sheet_rows(runs, page, columns):
 def sheet_section(report):
     page = report.tables
     page.heading("Pictures")
-    page.prose("""Each sheet shows ground truth, rendering and error (5 times) of held-out pictures
-        at three times; the rendering is from the decoded file.""")
+    page.prose("""Each sheet shows ground truth, rendering and error (5 times) of four
+        held-out pictures; the rendering is from the decoded file.""")
     page.table("sheet", "changed", "PSNR dB", "SSIM", "MS-SSIM", "bytes", "training s",
                "jobs x threads", "anchors", "moving", "decode ms")
     sheet_rows(report.runs, page, "psnr:2 ssim:4 ms_ssim:4 bytes train_s:0 team anchors dynamic "
