@@ -18,6 +18,10 @@ def percent(share, digits):
     return "-" if share is None else f"{100 * share:.{digits}f} %"
 
 
+def counted(number, word):
+    return f"{number} {word}{'' if number == 1 else 's'}"
+
+
 def cells(run, names):
     """Columns of a run's row as cells. names: divided by spaces, with ":DIGITS" where a number is
     rounded; team: jobs and threads."""

@@ -6,9 +6,9 @@ SPDX-License-Identifier: BSD-2-Clause"""
 from ..compare import Change, base_of, is_mixed, seed_spread, whole_run, within_seeds
 from ..rows import mark
 from ..seeded import Seeded
-from ..words import anchor, fixed, signed
+from ..words import anchor, counted, fixed, signed
 from . import estimate, lives, precision, singles, variant_bars
-from .held_out import cameras_text, counted, folders
+from .held_out import cameras_text, folders
 from .rate import is_monotone
 
 SCENE = "kitchen"
@@ -161,7 +161,8 @@ def medium(report):
     if not run.has():
         return None
     return (f"Preset `medium` trains `kitchen` at full size in "
-            f"{run.count('train_s') / 60:.1f} minutes of steps on {run.text('threads')} threads, "
+            f"{run.count('train_s') / 60:.1f} minutes of steps on "
+            f"{counted(int(run.count('threads')), 'thread')}, "
             f"to {db(run)} in {run.count('bytes') / 1e6:.2f} MB.", [run])
 
 

@@ -3,6 +3,8 @@ cameras.
 SPDX-License-Identifier: BSD-2-Clause"""
 import csv
 
+from ..words import counted
+
 
 def held_out(report, scene):
     """(cameras, pictures) that training never saw, no camera where pictures of the training cameras
@@ -15,10 +17,6 @@ def held_out(report, scene):
     except FileNotFoundError:
         pass
     return None
-
-
-def counted(number, word):
-    return f"{number} {word}{'' if number == 1 else 's'}"
 
 
 def folders(report, scenes):

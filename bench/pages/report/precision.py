@@ -6,9 +6,8 @@ import statistics
 from ..bars import DELIVERED
 from ..plot import Plot
 from ..rows import mark
-from ..words import fixed, signed
+from ..words import counted, fixed, signed
 from .context import sweep
-from .held_out import counted
 
 STEPS = {"0.5": "steps0.5", "1": "whole", "2": "steps2", "4": "steps4"}
 PRECISIONS = {"integer": "", "float32": "7 4", "float64": "2 4"}    # and their dashes

@@ -3,7 +3,7 @@ SPDX-License-Identifier: BSD-2-Clause"""
 from ..bars import DELIVERED, First
 from ..compare import is_mixed
 from ..rows import mark
-from ..words import cells, fixed, signed
+from ..words import cells, counted, fixed, signed
 from .context import sweep
 
 
@@ -29,9 +29,9 @@ def medium_section(report):
               and run.count("train_s") <= 3600
               and run.count("jobs") * run.count("threads") <= 2)
         measured = (f"{fixed(run.count('train_s') / 60, 1)} min of steps by "
-                    f"{run.text('threads')} threads; {fixed(run.number('psnr'), 2)} dB; "
-                    f"{fixed(run.count('bytes') / 1e6, 2)} MB{mark([run])}; what limits it: "
-                    "[notes](report.md#notes)")
+                    f"{counted(int(run.count('threads')), 'thread')}; "
+                    f"{fixed(run.number('psnr'), 2)} dB; {fixed(run.count('bytes') / 1e6, 2)} MB"
+                    f"{mark([run])}; what limits it: [notes](report.md#notes)")
     report.bars.add(2, "kitchen at full size, `--preset medium`, highest rate, two cores",
                     "60 minutes; 27 dB (aim 30); 1.5 MB", measured, ok, sweep("medium"))
 
