@@ -10,6 +10,7 @@
 #include "norm/half.h"
 #include "norm/scene.h"
 #include "norm/tables.h"
+#include "choose_spans.h"
 #include "settle_positions.h"
 #include "stages.h"
 #include "train/state/anchor_masks.h"
@@ -109,12 +110,15 @@ static int keep_anchors(const ted4_trainer *t, uint32_t *keep, size_t *n)
     return 0;
 }
 
-/* Enters the integer stage if necessary, and stage 2 before it, even if that has no steps. */
+/* Enters the integer stage if necessary, and stage 2 before it, even if that has no steps. Then
+ * chooses spans, if the encoder decides what pays. */
 static int settle(ted4_trainer *t)
 {
     if (!t->phase.stage2 && ted4_stage2_begin(t) != 0)
         return -1;
-    return !t->phase.integer ? ted4_integer_begin(t) : 0;
+    if (!t->phase.integer && ted4_integer_begin(t) != 0)
+        return -1;
+    return t->opt.capacity ? ted4_choose_spans(t) : 0;
 }
 
 /* R-ENC-004: a mask all of whose bits are 1 is not coded. */

@@ -1,0 +1,216 @@
+/* test_choose_spans.c - train/step/choose_spans.c: what changes no picture takes the cheapest
+ * symbol, the change of activation is that of spec 11.4, and the file has what was chosen.
+ * SPDX-License-Identifier: BSD-2-Clause */
+#include <math.h>
+
+#include "cloud_case.h"
+#include "norm/scene.h"
+#include "test.h"
+#include "train/math/random.h"
+#include "train/step/choose_spans.h"
+#include "train/step/export_scene.h"
+#include "train/step/stages.h"
+#include "write/encode.h"
+
+enum { FRAMES = 9, SPANS = 300, WIDE = 40 };
+#define assert_near(a, b, most) assert_true(fabs((a) - (b)) <= (most))
+#define WORTH                   1e-5 /* as choose_spans.h has it: a mean squared change per bit */
+
+/* Symbols with a step of 1/16: a_s and a_f from -2 to 3, widths from 2^-6 to 2^2. */
+static ted4_span random_span(uint64_t seed)
+{
+    ted4_span s = { .step = 0.0625f };
+
+    for (int i = 0; i < TED4_SPAN_PARTS; i++) {
+        const uint64_t r = ted4_mix(seed * 8 + (uint64_t)i);
+        const int low = i % 2 ? -96 : -32, n = i % 2 ? 128 : 80;
+
+        s.k[i] = low + (int)(r % (uint64_t)n);
+        s.mu[i] = (low + (int)((r >> 16) % (uint64_t)n)) * 256 + (int)((r >> 32) % 256);
+        s.sigma[i] = (uint8_t)(64 + (r >> 40) % 64);
+    }
+    if (s.k[0] > s.k[2])
+        s.k[2] = s.k[0];
+    return s;
+}
+
+static double activation(const ted4_span *s, double t)
+{
+    const double q = (double)s->step, start = s->k[0] * q, end = s->k[2] * q;
+    const double b = fmax(exp2(s->k[t < start ? 1 : 3] * q), 0x1p-12);
+    const double u = t < start ? (t - start) / b : t > end ? (t - end) / b : 0;
+
+    return exp(-u * u);
+}
+
+static double change(const ted4_span *a, const ted4_span *b, int frames)
+{
+    const int n = 2 * frames - 1;
+    double sum = 0;
+
+    for (int i = 0; i < n; i++) {
+        const double t = n > 1 ? (double)i / (n - 1) : 0;
+
+        sum += pow(activation(a, t) - activation(b, t), 2) / n;
+    }
+    return sum;
+}
+
+static double cost(const ted4_span *s, const ted4_span *given, int frames)
+{
+    return ted4_span_change(s, given, (uint32_t)frames, INFINITY) + WORTH * ted4_span_bits(s);
+}
+
+static void test_change(void **state)
+{
+    (void)state;
+    for (uint64_t i = 0; i < SPANS; i++)
+        for (int frames = 1; frames <= FRAMES; frames += 4) {
+            const ted4_span a = random_span(i), b = random_span(i + SPANS);
+            const double want = change(&a, &b, frames);
+
+            assert_near(ted4_span_change(&a, &b, (uint32_t)frames, INFINITY), want, 1e-5);
+            assert_true(want < 1e-3 ||
+                        ted4_span_change(&a, &b, (uint32_t)frames, want / 2) > want / 2);
+        }
+}
+
+/* Edges before the first frame and after the last: whatever they are, activation is 1. */
+static void test_out_of_sight(void **state)
+{
+    const ted4_span always = {
+        .step = 0.0625f,
+        .mu = { -5 * 256, 7 * 256, 20 * 256 + 100, -9 * 256 - 100 },
+        .sigma = { 90, 90, 90, 90 },
+        .k = { -30, 50, 70, -60 },
+    };
+    const int want[TED4_SPAN_PARTS] = { -5, 7, 20, -9 };
+    ted4_span s = always;
+
+    (void)state;
+    ted4_span_choose(&s, FRAMES);
+    for (int i = 0; i < TED4_SPAN_PARTS; i++)
+        assert_int_equal(s.k[i], want[i]);
+    assert_near(ted4_span_change(&s, &always, FRAMES, INFINITY), 0, 0);
+    s = always;
+    s.k[1] = -20;     /* a steep edge */
+    s.mu[0] = 8 * 256; /* in the middle of the sequence, where the edge must not follow */
+    s.mu[1] = -20 * 256;
+    ted4_span_choose(&s, FRAMES);
+    assert_in_range(s.k[0], 0, 1);
+    assert_true(ted4_span_change(&s, &always, FRAMES, INFINITY) < 1e-3);
+}
+
+/* No choice costs more than the given symbols; symbols lie between those and their means. */
+static void test_never_worse(void **state)
+{
+    int changed = 0;
+
+    (void)state;
+    for (uint64_t i = 0; i < SPANS; i++) {
+        const ted4_span given = random_span(i);
+        ted4_span s = given;
+
+        ted4_span_choose(&s, FRAMES);
+        assert_true(cost(&s, &given, FRAMES) <= cost(&given, &given, FRAMES));
+        assert_true(s.k[0] <= s.k[2]);
+        for (int part = 0; part < TED4_SPAN_PARTS; part++) {
+            const int mean = ted4_round_shift(s.mu[part], TED4_MU_BITS), from = given.k[part];
+
+            assert_true(from < mean ? s.k[part] >= from && s.k[part] <= mean
+                                    : s.k[part] <= from && s.k[part] >= mean);
+            changed += s.k[part] != from;
+        }
+    }
+    assert_true(changed > SPANS / 2);
+}
+
+/* With three symbols at their means, where they stay, the fourth is the cheapest of all between its
+ * own and its mean: the search does not end too soon. */
+static void test_cheapest(void **state)
+{
+    (void)state;
+    for (uint64_t i = 0; i < SPANS; i++)
+        for (int part = 0; part < TED4_SPAN_PARTS; part++) {
+            ted4_span given = random_span(i), s;
+            double least = INFINITY;
+
+            for (int other = 0; other < TED4_SPAN_PARTS; other++)
+                given.mu[other] = other == part ? given.mu[other] : given.k[other] * 256;
+            s = given;
+            ted4_span_choose(&s, FRAMES);
+
+            const int mean = ted4_round_shift(given.mu[part], TED4_MU_BITS);
+            ted4_span any = given;
+
+            for (;; any.k[part] += mean > any.k[part] ? 1 : -1) {
+                if (any.k[0] <= any.k[2])
+                    least = fmin(least, cost(&any, &given, FRAMES));
+                if (any.k[part] == mean)
+                    break;
+            }
+            assert_near(cost(&s, &given, FRAMES), least, 0);
+        }
+}
+
+static cloud_case cloud;
+
+static void begin(ted4_trainer *t)
+{
+    static const float span[TED4_SPAN_PARTS] = { -0.4f, -3, 0.7f, -3 };
+
+    cloud_make(&cloud, FRAMES);
+    cloud_begin(&cloud, t);
+    for (size_t i = 0; i < t->anchors.n; i++)
+        for (int c = 0; c < TED4_SPAN_PARTS; c++)
+            *ted4_anchor_value(&t->anchors, TED4_ROW_VALUE, i, t->layout.first[TED4_TAU] + c) =
+                span[c] - 0.003f * (float)(i % WIDE);
+    assert_int_equal(ted4_stage2_begin(t), 0);
+    assert_int_equal(ted4_integer_begin(t), 0);
+    assert_int_equal(t->layout.head.activation, 1);
+}
+
+/* Bits of tau in the file that the trainer makes, and by the trainer's own count. */
+static double exported_bits(ted4_trainer *t, double *estimate)
+{
+    double bits[TED4_TYPES];
+    ted4_scene *s;
+    ted4_bits file;
+
+    assert_int_equal(ted4_export_scene(t, &s), 0);
+    assert_int_equal(ted4_count(s, NULL, &file, NULL), TED4_OK);
+    assert_int_equal(ted4_integer_rate(t, bits), 0);
+    *estimate = bits[TED4_TAU];
+    ted4_scene_free(s);
+    return file.type[TED4_TAU];
+}
+
+/* With --capacity auto the file has fewer bits of spans, with fixed it has the nearest symbols; the
+ * trainer's estimate is that of the file. */
+static void test_exported(void **state)
+{
+    double bits[2], estimate[2];
+
+    (void)state;
+    for (int capacity = 0; capacity < 2; capacity++) {
+        ted4_trainer t;
+
+        begin(&t);
+        t.opt.capacity = capacity;
+        bits[capacity] = exported_bits(&t, &estimate[capacity]);
+        assert_near(estimate[capacity], bits[capacity], 0.02 * bits[capacity] + 8);
+        ted4_trainer_finish(&t);
+    }
+    assert_true(bits[1] < 0.95 * bits[0]);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_change),     cmocka_unit_test(test_out_of_sight),
+        cmocka_unit_test(test_never_worse), cmocka_unit_test(test_cheapest),
+        cmocka_unit_test(test_exported),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
