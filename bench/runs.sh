@@ -162,13 +162,14 @@ make_stage1() {
     train "${stage1_file%.stage1}" $stage1 --set stage2=0 && [ -s "$stage1_file" ]
 }
 
-# Sources that are known to write the same bytes for the scene $where as $1, by the table equal.csv
-# among the results, or that of bench/, with blanks around.
+# Sources that are known to write the same bytes as $1 for the scene $where with $options, by the
+# table equal.csv among the results, or that of bench/, with blanks around.
 equal_to() {
     equal=$results/equal.csv
     [ -f "$equal" ] || equal=bench/equal.csv
-    awk -F, -v now="$1" -v where="$where" '
-        NR > 1 && ($4 == "" || where !~ "^(" $4 ")$") { from[NR] = $1; to[NR] = $2 }
+    awk -F, -v now="$1" -v where="$where" -v run="$where $options " '
+        function fits(but) { return but != "" && (where ~ "^(" but ")$" || run ~ "^(" but ")$") }
+        NR > 1 && !fits($4) { from[NR] = $1; to[NR] = $2 }
         END {
             known[now] = 1
             do {

@@ -39,7 +39,7 @@ ref-encoder/train/state     base norm recon data $rooms_3
 ref-encoder/train/densify   render math $rooms_4
 ref-encoder/train/resize    norm math $rooms_4
 ref-encoder/train/monitor   math $rooms_5
-ref-encoder/train/step      base norm recon math write $rooms_6
+ref-encoder/train/step      base norm recon math kernel write $rooms_6
 ref-encoder/train/search    math write $rooms_7
 ref-encoder/train           $training
 ref-encoder/mpi             tool train/state

@@ -6,6 +6,7 @@
 #include "choose_spans.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 #include "base/bytes.h"
 #include "kernel/int_kernel.h"
@@ -50,78 +51,148 @@ double ted4_span_bits(const ted4_span *s)
     return bits;
 }
 
-/* tau: the values, TED4_LANES floats apart, as ted4_find_edge takes them. */
-static void span_values(const ted4_span *s, float *tau)
+void ted4_span_times(uint32_t n_frames, float *time)
 {
+    const size_t n = ted4_span_n_times(n_frames);
+
+    for (size_t i = 0; i < n; i++)
+        time[i] = n > 1 ? (float)i / (float)(n - 1) : 0.0f;
+}
+
+/* The activation beyond an edge, at the times from first to last - 1 (spec 11.4). */
+static void beyond_edge(const float *time, const float *tau, float at, size_t first, size_t last,
+                        float *activation)
+{
+    if (first == last)
+        return;
+
+    const float width = ted4_find_edge(time[first], tau, ted4_pow2).width;
+
+    for (size_t i = first; i < last; i++)
+        activation[i] = ted4_activation((time[i] - at) / width, ted4_pow2);
+}
+
+void ted4_span_activation(const ted4_span *s, const float *time, size_t n, float *activation)
+{
+    float tau[TED4_SPAN_PARTS * TED4_LANES];
+    size_t first = 0, last = n; /* times within the span */
+
     for (int i = 0; i < TED4_SPAN_PARTS; i++)
         tau[i * TED4_LANES] = (float)s->k[i] * s->step;
+
+    const float start = tau[START * TED4_LANES], end = tau[END * TED4_LANES];
+
+    while (first < n && time[first] < start)
+        first++;
+    while (last > first && time[last - 1] > end)
+        last--;
+    beyond_edge(time, tau, start, 0, first, activation);
+    for (size_t i = first; i < last; i++)
+        activation[i] = 1;
+    beyond_edge(time, tau, end, last, n, activation);
 }
 
-static double activation_at(float time, const float *tau)
+double ted4_span_change(const float *a, const float *b, size_t n)
 {
-    return (double)ted4_activation(ted4_find_edge(time, tau, ted4_pow2).u, ted4_pow2);
-}
-
-double ted4_span_change(const ted4_span *a, const ted4_span *b, uint32_t n_frames, double most)
-{
-    const uint32_t n = 2 * n_frames - 1;
-    const double enough = most * n;
-    float tau_a[TED4_SPAN_PARTS * TED4_LANES], tau_b[TED4_SPAN_PARTS * TED4_LANES];
     double sum = 0;
 
-    span_values(a, tau_a);
-    span_values(b, tau_b);
-    for (uint32_t i = 0; i < n && sum <= enough; i++) {
-        const float time = n > 1 ? (float)i / (float)(n - 1) : 0.0f;
-        const double d = activation_at(time, tau_a) - activation_at(time, tau_b);
-
-        sum += d * d;
-    }
-    return sum / n;
+    for (size_t i = 0; i < n; i++)
+        sum += (double)((a[i] - b[i]) * (a[i] - b[i]));
+    return sum / (double)n;
 }
 
-/* Moves one symbol towards its mean, step by step. The further it goes, the fewer bits it takes,
- * and the more the activation differs, at every time; so the search ends when that difference alone
- * costs more than the best symbol so far. */
-static void choose_part(ted4_span *s, const ted4_span *given, uint32_t n_frames, int part)
+/* The search for one symbol. */
+typedef struct {
+    ted4_span *s;
+    int part;
+    size_t n;
+    const float *time;  /* [n] */
+    const float *given; /* [n] activation by the given symbols */
+    float *now;         /* [n] */
+    int best;
+    double least; /* cost of the best symbol so far */
+} search;
+
+/* A symbol, the change of activation and the bits that it means. */
+typedef struct {
+    int k;
+    double change, bits;
+} candidate;
+
+static candidate try_symbol(search *f, int k)
 {
-    const int mean = ted4_clamp(ted4_round_shift(s->mu[part], TED4_MU_BITS), -MOST, MOST);
-    const int toward = mean > s->k[part] ? 1 : -1;
-    int best = s->k[part];
-    double least = ted4_span_change(s, given, n_frames, INFINITY) + WORTH * part_bits(s, part);
+    candidate c = { .k = k };
 
-    for (int k = best; k != mean;) {
-        k += toward;
-        s->k[part] = k;
-        if (s->k[START] > s->k[END])
-            break; /* R-ATT-001 */
-        const double change = ted4_span_change(s, given, n_frames, least);
-        const double cost = change + WORTH * part_bits(s, part);
-
-        if (change > least)
-            break;
-        if (cost < least) {
-            least = cost;
-            best = k;
-        }
+    f->s->k[f->part] = k;
+    ted4_span_activation(f->s, f->time, f->n, f->now);
+    c.change = ted4_span_change(f->now, f->given, f->n);
+    c.bits = part_bits(f->s, f->part);
+    if (c.change + WORTH * c.bits < f->least) {
+        f->least = c.change + WORTH * c.bits;
+        f->best = k;
     }
-    s->k[part] = best;
+    return c;
 }
 
-void ted4_span_choose(ted4_span *s, uint32_t n_frames)
+/* Searches between two symbols, of which far is nearer to the mean. On the way there, bits become
+ * fewer and the change becomes larger, at every time, as long as the other symbols are as given.
+ * What lies between costs at least the change of the one and the bits of the other. */
+static void search_between(search *f, candidate near, candidate far)
 {
-    const ted4_span given = *s;
+    if (abs(far.k - near.k) <= 1 || near.change + WORTH * far.bits >= f->least)
+        return;
 
-    for (int pass = 0; pass < PASSES; pass++)
+    const candidate middle = try_symbol(f, near.k + (far.k - near.k) / 2);
+
+    search_between(f, near, middle);
+    search_between(f, middle, far);
+}
+
+/* Moves one symbol towards its mean; true if it has changed. */
+static int choose_part(search *f, int part)
+{
+    ted4_span *s = f->s;
+    const int given = s->k[part];
+    int mean = ted4_clamp(ted4_round_shift(s->mu[part], TED4_MU_BITS), -MOST, MOST);
+
+    if (part == START) /* R-ATT-001: a_s is at most a_f */
+        mean = mean < s->k[END] ? mean : s->k[END];
+    else if (part == END)
+        mean = mean > s->k[START] ? mean : s->k[START];
+    if (mean == given)
+        return 0;
+    f->part = part;
+    f->least = INFINITY;
+    f->best = given;
+
+    const candidate near = try_symbol(f, given), far = try_symbol(f, mean);
+
+    search_between(f, near, far);
+    s->k[part] = f->best;
+    return f->best != given;
+}
+
+void ted4_span_choose(ted4_span *s, const float *time, size_t n, float *scratch)
+{
+    search f = { .s = s, .n = n, .time = time, .given = scratch, .now = scratch + n };
+    int changed = 1;
+
+    ted4_span_activation(s, time, n, scratch);
+    for (int pass = 0; changed && pass < PASSES; pass++) {
+        changed = 0;
         for (int i = 0; i < TED4_SPAN_PARTS; i++)
-            choose_part(s, &given, n_frames, part_order[i]);
+            changed |= choose_part(&f, part_order[i]);
+    }
 }
 
 /* What choosing needs of all blocks. */
 typedef struct {
     ted4_trainer *t;
     ted4_prior prior;
-    int32_t *out; /* [BATCH][P][64], owned by the arena: outputs of the hyperprior */
+    int32_t *out;   /* [BATCH][P][64], owned by the arena: outputs of the hyperprior */
+    float *time;    /* [n_times], owned by the arena */
+    float *scratch; /* [BATCH][2][n_times], owned by the arena */
+    size_t n_times;
     size_t first; /* the first block of the batch */
 } chooser;
 
@@ -170,6 +241,7 @@ static void choose_block(void *arg, size_t i)
     const size_t first = (c->first + i) * TED4_LANES, left = t->anchors.n - first;
     const size_t n = left < TED4_LANES ? left : TED4_LANES;
     int32_t *out = c->out + i * t->layout.shape.n_outputs * TED4_PRIOR_BLOCK;
+    float *scratch = c->scratch + i * 2 * c->n_times;
     uint16_t position[TED4_LANES][3] = { { 0 } };
 
     for (size_t j = 0; j < n; j++)
@@ -181,7 +253,7 @@ static void choose_block(void *arg, size_t i)
         const ted4_span given = rounded_span(t, first + j, out + j);
         ted4_span chosen = given;
 
-        ted4_span_choose(&chosen, t->data->n_frames);
+        ted4_span_choose(&chosen, c->time, c->n_times, scratch);
         for (int part = 0; part < TED4_SPAN_PARTS; part++)
             if (chosen.k[part] != given.k[part])
                 *tau_value(t, first + j, part) = (float)chosen.k[part] * chosen.step;
@@ -191,7 +263,7 @@ static void choose_block(void *arg, size_t i)
 int ted4_choose_spans(ted4_trainer *t)
 {
     const size_t n_blocks = t->anchors.n_blocks;
-    chooser c = { .t = t };
+    chooser c = { .t = t, .n_times = ted4_span_n_times(t->data->n_frames) };
     ted4_arena arena;
     int bad;
 
@@ -203,7 +275,11 @@ int ted4_choose_spans(ted4_trainer *t)
     c.prior.dense = ted4_select_int_dense();
     c.out = ted4_arena_alloc(&arena, BATCH * (size_t)t->layout.shape.n_outputs,
                              TED4_PRIOR_BLOCK * sizeof *c.out);
-    bad = bad || c.out == NULL;
+    c.time = ted4_arena_alloc(&arena, c.n_times, sizeof *c.time);
+    c.scratch = ted4_arena_alloc(&arena, BATCH * c.n_times, 2 * sizeof *c.scratch);
+    bad = bad || c.out == NULL || c.time == NULL || c.scratch == NULL;
+    if (!bad)
+        ted4_span_times(t->data->n_frames, c.time);
     for (c.first = 0; !bad && c.first < n_blocks; c.first += BATCH)
         ted4_parallel_for(t->parallel, n_blocks - c.first < BATCH ? n_blocks - c.first : BATCH,
                           choose_block, &c);

@@ -20,12 +20,21 @@ typedef struct {
 
 /* Returns the ideal code length of all symbols, in bits (spec 9.4). */
 double ted4_span_bits(const ted4_span *s);
-/* Returns the mean squared difference between the activations of two spans, over n_frames >= 1
- * frames, and the times halfway between them; above most it is only known to be so. */
-double ted4_span_change(const ted4_span *a, const ted4_span *b, uint32_t n_frames, double most);
+/* Returns the number of times at which activations are compared: those of n_frames >= 1 frames, and
+ * halfway between them. */
+static inline size_t ted4_span_n_times(uint32_t n_frames)
+{
+    return 2 * (size_t)n_frames - 1;
+}
+/* time: [ted4_span_n_times()] out, from 0 to 1, in ascending order. */
+void ted4_span_times(uint32_t n_frames, float *time);
+/* time: [n], n >= 1, ascending. activation: [n] out, from 0 to 1 (spec 11.4). */
+void ted4_span_activation(const ted4_span *s, const float *time, size_t n, float *activation);
+/* Returns the mean squared difference of two activations: [n], n >= 1. */
+double ted4_span_change(const float *a, const float *b, size_t n);
 /* Moves symbols towards their means, where the bits saved are worth the change of activation.
- * Afterwards k[0] <= k[2] still. */
-void ted4_span_choose(ted4_span *s, uint32_t n_frames);
+ * Afterwards k[0] <= k[2] still. time: [n], n >= 1, ascending. scratch: [2][n]. */
+void ted4_span_choose(ted4_span *s, const float *time, size_t n, float *scratch);
 
 /* Chooses the symbols of all spans, and moves the trainer's values to those that have changed. The
  * trainer must be in its integer stage. Does nothing if the model has no activation. Returns 0, or
