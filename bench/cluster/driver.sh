@@ -29,7 +29,7 @@ while [ $# -gt 0 ]; do
     esac
 done
 case $table in
-sweep|stability|capacity|zoo|bd_rate) ;;
+sweep|stability|capacity|zoo|bd_rate|held_out) ;;
 *) usage; exit 3 ;;
 esac
 build=${TED4_BUILD:-build}

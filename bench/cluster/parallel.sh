@@ -1,8 +1,9 @@
 #!/bin/sh
 # parallel.sh - makes the missing and stale rows of a table of runs by GNU parallel, on this machine
 # or on several that share this folder. bench/cluster.md tells how.
-# Usage, from anywhere:  bench/cluster/parallel.sh sweep|stability|capacity|zoo|bd_rate [PATTERN...]
+# Usage, from anywhere:  bench/cluster/parallel.sh TABLE [PATTERN...]
 #                             [--missing] [--jobs N] [--threads N] [-- OPTION_OF_PARALLEL...]
+#     TABLE        sweep, stability, capacity, zoo, bd_rate or held_out
 #     PATTERN..., --missing, and the environment    as bench/sweep.sh, bench/stability.sh, ... take
 #                                                   them
 #     --jobs N     runs at a time on each machine; as many as it has cores without it

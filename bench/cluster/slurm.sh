@@ -1,9 +1,10 @@
 #!/bin/sh
 # slurm.sh - makes the missing and stale rows of a table of runs by job arrays of Slurm, on machines
 # that share this folder. bench/cluster.md tells how.
-# Usage, from anywhere:  bench/cluster/slurm.sh sweep|stability|capacity|zoo|bd_rate [PATTERN...]
+# Usage, from anywhere:  bench/cluster/slurm.sh TABLE [PATTERN...]
 #                             [--missing] [--tasks N] [--at-once N] [--wait]
 #                             [-- OPTION_OF_SBATCH...]
+#     TABLE        sweep, stability, capacity, zoo, bd_rate or held_out
 #     PATTERN..., --missing, and the environment    as bench/sweep.sh, bench/stability.sh, ... take
 #                                                   them
 #     --tasks N    at most N tasks of an array, each of which makes every N-th run; without it as
