@@ -3,8 +3,8 @@
 # and frame differences therefore do not show it: PSNR over all pixels within outlines that were
 # drawn by hand. Prints one JSON line, as zoo_masks does.
 # Usage, from anywhere:  bench/outlined.sh FILE.ted4 SCENE OUTLINES DOWNSCALE
-#     OUTLINES   a line "WIDTH HEIGHT", the size of the pictures; then for each held-out picture a
-#                line with its name, without suffix, and the corners of a polygon: "00005 x,y x,y .."
+#     OUTLINES   a line "WIDTH HEIGHT", the size of the pictures; then a line for each held-out
+#                picture, its name without suffix and the corners of a polygon: "00005 x,y x,y ..."
 #     DOWNSCALE  as ted4eval --downscale
 # Needs ImageMagick (convert), ted4eval and zoo_masks. Environment: TED4_BUILD (build).
 # SPDX-License-Identifier: BSD-2-Clause
