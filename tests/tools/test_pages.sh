@@ -33,7 +33,7 @@ page bd_rate bd_rate.md
 # A key is the hash of the options, a hyphen, and the hash of the sources, followed by that of the
 # judging programs if these are others.
 # Those of machines.csv have one hash of both.
-for csv in sweep capacity stability zoo bd_rate machines; do
+for csv in sweep capacity stability zoo bd_rate held_out machines; do
     if [ $csv = machines ]; then key='[0-9a-f]+'; else key='[0-9a-f]+-[0-9a-f]+([.][0-9a-f]+)?'; fi
     bad_rows=$(awk -F, -v key="^$key\$" '
         NR == 1 { for (i = 1; i <= NF; i++) if ($i == "key") c = i; if (!c) print "no key"; next }
