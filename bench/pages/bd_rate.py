@@ -49,8 +49,8 @@ def write(runs, _charts, results, _pages):
     page.prose("""Bar 1 compares with files that the former default made: profile Main, a shorter
         stage 2, and spans that were not yet chosen by rate and distortion. Nothing else in the
         encoder differs. Today's encoder makes files of profile Main smaller, too. Against these,
-        BD-rate shows the effect of the profile and of the longer stage 2 alone: """ + scene_words(rates_now(runs)) + ". "
-               + ATTEMPTS)
+        BD-rate shows the effect of the profile and of the longer stage 2 alone: """
+               + scene_words(rates_now(runs)) + ". " + ATTEMPTS)
     rate_table(runs, page)
     run_table(runs, page)
     return {"bd_rate.md": page.text()}
