@@ -111,7 +111,7 @@ def cost_bar(runs, bars, costs, results):
         measured += (f"; most: {worst} {signed(100 * over[worst], 1, ' %')}"
                      + mark([run for scene in over for run in rows_of(runs, scene)]))
     if mixed:
-        measured += f"; rows of two encoders: {', '.join(mixed)}"
+        measured += ("; " if measured else "") + f"rows of two encoders: {', '.join(mixed)}"
     bars.add(4, "cost of auto against the best fixed setting",
              "at most 2 % more, or one standard deviation over seeds, on every scene", measured,
              False if missed else True if scenes and len(over) == len(scenes)

@@ -25,7 +25,7 @@ def section(page, costs, missed, notes):
             the cause.""")
         page.say()
     else:
-        page.prose("No scene that has all its rows misses bar 4.")
+        page.prose("No scene of which all rows are of one encoder misses bar 4.")
     for scene in missed:
         page.item(f"{scene} ({over_words(costs, scene)}): "
                   + notes.get(scene, "**not explained yet**"))

@@ -100,14 +100,15 @@ def verdicts(report, seeded):
 
 
 def recipe_section(report):
-    """The paper's recipe alone with one thing changed: what that part of the method is worth where
-    nothing that the paper does not have does its work."""
+    """The recipe with one thing changed: what that part of the method is worth where neither
+    seeding nor the initial points do its work."""
     page, runs = report.tables, report.runs
     page.heading("The paper's recipe alone", 3)
-    page.prose("""This is the same comparison without what the paper does not have: no multi-view
-        seeding (sprouts), transients or probe. Each seed is compared with the recipe at the same
-        seed and λ, as in the paper's table: in PSNR and bytes, with their means, and in the mean of
-        PSNR at equal bytes, along the recipe's own curve of three λ, with its standard error.""")
+    page.prose("""This is the same comparison without multi-view seeding (sprouts), transients and
+        probe. What else the paper does not have stays, as said [above](#one-thing-changed). Each
+        seed is compared with the recipe at the same seed and λ, as in the paper's table: in PSNR
+        and bytes, with their means, and in the mean of PSNR at equal bytes, along the recipe's own
+        curve of three λ, with its standard error.""")
     page.table("scene", "changed", "by seed", "mean", "at equal bytes", "p", "alone", "together",
                "paper")
     for scene, variant in seeded_variants(runs, "recipe"):

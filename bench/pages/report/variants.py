@@ -56,13 +56,14 @@ def explain(page):
         means that PSNR at equal bytes differs by less than the spread of three seeds of the whole
         method on that scene.""")
     page.prose("""*factorised_flat* has one Gaussian per component for all anchors; *factorised*
-        also keeps the autoregression. *inr* has layers as wide as those of the whole
-        method's F_deform, *inr_paper* as many and as wide as the paper's. *hardmask* gives the
-        temporal mask ten times its weight. *recipe* leaves out what the paper does not have:
-        multi-view seeding (sprouts), short-lived initial points (transients) and the static-scene
-        test (probe). Only the rows *_auto* choose their capacity; they are compared with the whole
-        method with that choice, *whole_auto*. The numbers of steps are among the
-        [options](#commands) behind the rows.""")
+        also keeps the autoregression. *inr* has layers as wide as those of the whole method's
+        F_deform, *inr_paper* as many and as wide as the paper's. *hardmask* gives the temporal mask
+        ten times its weight. *recipe* leaves out multi-view seeding (sprouts), short-lived initial
+        points (transients) and the static-scene test (probe). It is not all of the [paper's
+        recipe](../doc/switches.md#the-papers-recipe): profile Compact, the rule that stops anchors,
+        dropout, and the correction of poses and exposures stay. Only the rows *_auto* choose their
+        capacity; they are compared with the whole method with that choice, *whole_auto*. The
+        numbers of steps are among the [options](#commands) behind the rows.""")
 
 
 def variants_of(runs, scene):
