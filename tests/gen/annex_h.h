@@ -159,8 +159,12 @@ static inline void annex_h_networks(FILE *out)
     fprintf(out, "| exponent E of a unit, Compact | -128 | 127 | 7.6 |\n");
     fprintf(out, "| significant bits of a coded integer, Compact | 0 | %d | R-NET-012 |\n",
             TED4_WEIGHT_BITS);
-    fprintf(out, "| magnitude of a coded integer, Compact | 0 | %s | 9.6 |\n",
-            annex_h_text(INT32_MAX).text);
+    /* As many bits 1 as a binary32 has, then bits 0. */
+    fprintf(out,
+            "| magnitude of a coded integer, Compact | 0 | 2^%d - 2^%d (%s can be coded) | 9.6, "
+            "R-NET-012 |\n",
+            31, 31 - TED4_WEIGHT_BITS, annex_h_text(INT32_MAX).text);
+    fprintf(out, "| length of a coded integer, Compact | 0 | 31 | R-ENT-018 |\n");
     fprintf(out, "| accumulator | -(%s) | %s | R-NET-006 |\n", annex_h_text(INT32_MAX).text,
             annex_h_text(INT32_MAX).text);
     fprintf(out, "| outputs of Tier E networks | -(%s) | %s | 7.3 |\n",
@@ -179,7 +183,9 @@ static inline void annex_h_symbols(FILE *out)
     fprintf(out, "| bits g of a place, Compact | 6 | 12, or %d | R-POS-004 |\n", TED4_OCTREE_DEPTH);
     fprintf(out,
             "| adaptive bits of a substream, Compact | 7 g (POSN), 5 (blobs) | 8 g (N + 1) (POSN), "
-            "36 n (blobs) | 9.5, 9.6 |\n");
+            "36 n (blobs) | 9.5, 9.6 |\n"
+            "| bytes of a substream of adaptive bits, Compact | 4, and ceil(n / 8) of n anchors or "
+            "values | the rest of the payload | R-ENT-016 |\n");
     fprintf(out,
             "| adaptive probability p | %d | 2^16 - %d | 9.5 |\n| bits seen | 0 | %d | 9.5 |\n",
             TED4_ADAPTIVE_LEAST, TED4_ADAPTIVE_LEAST, TED4_ADAPTIVE_MEMORY);
