@@ -10,6 +10,7 @@
 #include "arguments.h"
 #include "cli.h"
 #include "contract.h"
+#include "graver.h"
 #include "json_string.h"
 #include "leftovers.h"
 #include "threads.h"
@@ -396,9 +397,7 @@ int main(int argc, char **argv)
     ted4_leftovers_watch();
     for (int i = optind; i < argc; i++) {
         set.input = argv[i];
-        const int code = work(&set);
-
-        worst = code > worst ? code : worst;
+        worst = ted4_graver(worst, work(&set));
     }
     return ted4_cli_end("ted4dec", worst);
 }

@@ -15,6 +15,7 @@
 #include "cli.h"
 #include "file_cameras.h"
 #include "findings.h"
+#include "graver.h"
 #include "json_string.h"
 #include "plural.h"
 #include "ted4.h"
@@ -457,9 +458,7 @@ int main(int argc, char **argv)
         s.input = argv[i];
         if (i > optind && !s.on[OPT_JSON] && !s.on[OPT_QUIET])
             putchar('\n');
-        const int code = run(&s);
-
-        worst = code > worst ? code : worst;
+        worst = ted4_graver(worst, run(&s));
     }
     return ted4_cli_end("ted4info", worst);
 }

@@ -401,6 +401,34 @@ static void test_help(void **state)
     }
 }
 
+/* Of several files the gravest verdict counts, and a refusal is graver than a warning: whoever
+ * accepts files with warnings must not accept one that is refused. */
+static void test_gravest(void **state)
+{
+    char root[1024], warned[1200];
+    size_t size;
+
+    (void)state;
+    need_programs();
+    assert_non_null(getcwd(root, sizeof root));
+    snprintf(warned, sizeof warned, "'%s/conformance/vectors/content/CNT-pop-0.002.ted4'", root);
+    uint8_t *const data = contents("v1.ted4", &size);
+
+    write_contents("cut.ted4", data, size - 1);
+    write_contents("short.ted4", data, 40);
+    free(data);
+    assert_int_equal(run("ted4dec --test --lenient cut.ted4"), 2);
+    assert_int_equal(run("ted4dec --test --lenient short.ted4"), 1);
+    assert_int_equal(run("ted4dec --test --lenient cut.ted4 short.ted4 v1.ted4"), 1);
+    assert_int_equal(run("ted4dec --test --lenient short.ted4 cut.ted4"), 1);
+    assert_int_equal(run("ted4dec --test --lenient v1.ted4 cut.ted4 v1.ted4"), 2);
+    assert_int_equal(run("ted4dec --test --lenient short.ted4 missing.ted4 cut.ted4"), 3);
+    assert_int_equal(run("ted4info --validate %s", warned), 2);
+    assert_int_equal(run("ted4info --validate %s short.ted4", warned), 1);
+    assert_int_equal(run("ted4info --validate short.ted4 %s", warned), 1);
+    assert_int_equal(run("ted4info --validate short.ted4 %s missing.ted4", warned), 3);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -409,6 +437,7 @@ int main(void)
         cmocka_unit_test(test_widen),          cmocka_unit_test(test_several),
         cmocka_unit_test(test_seconds),        cmocka_unit_test(test_help),
         cmocka_unit_test(test_no_such_format), cmocka_unit_test(test_endless),
+        cmocka_unit_test(test_gravest),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }
