@@ -7,11 +7,11 @@
 #include <inttypes.h>
 #include <signal.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include "leftovers.h"
+#include "mp4_whole.h"
 
 /* Exit status of a child process that could not become ffmpeg. */
 enum { NO_FFMPEG = 127 };
@@ -28,9 +28,9 @@ static void become_ffmpeg(const char *size, const char *rate, const char *to, in
     const int none = open("/dev/null", O_WRONLY);
 
     if (none >= 0 && dup2(pictures, 0) >= 0 && dup2(none, 1) >= 0 && dup2(messages, 2) >= 0)
-        execlp("ffmpeg", "ffmpeg", "-hide_banner", "-v", "repeat+error", "-f", "rawvideo",
-               "-pix_fmt", "rgb24", "-s", size, "-r", rate, "-i", "pipe:0", "-vf", FILTER,
-               "-color_range", "tv", "-colorspace", "bt709", "-color_primaries", "bt709",
+        execlp("ffmpeg", "ffmpeg", "-hide_banner", "-v", "repeat+error", "-xerror", "-f",
+               "rawvideo", "-pix_fmt", "rgb24", "-s", size, "-r", rate, "-i", "pipe:0", "-vf",
+               FILTER, "-color_range", "tv", "-colorspace", "bt709", "-color_primaries", "bt709",
                "-color_trc", "iec61966-2-1", "-flags", "+bitexact", "-fflags", "+bitexact",
                "-movflags", "+faststart", "-f", "mp4", "-y", to, (char *)NULL);
     _exit(NO_FFMPEG);
@@ -113,13 +113,6 @@ static void first_words(FILE *messages, char *text, size_t size)
     text[n] = '\0';
 }
 
-static int is_empty(const char *path)
-{
-    struct stat there;
-
-    return stat(path, &there) != 0 || there.st_size == 0;
-}
-
 /* Waits for ffmpeg. A signal ends it, with this process, until it has ended by itself; after that,
  * its number may be another's. */
 static int wait_for(const ted4_video_out *v)
@@ -135,27 +128,41 @@ static int wait_for(const ted4_video_out *v)
     return status;
 }
 
+/* Returns what is wrong with the video of an ffmpeg that has ended, or NULL. Status 0 is no proof:
+ * some versions give it where the end of the file could not be written. Nor is a message proof of a
+ * failure: libraries, and what loads them, print harmless ones. words: the first message. */
+static const char *fault(const ted4_video_out *v, int status, int keep, const char *words)
+{
+    const int fails = v->broken || !WIFEXITED(status) || WEXITSTATUS(status) != 0;
+
+    if (!fails && (!keep || ted4_mp4_is_whole(v->file.temporary)))
+        return NULL;
+    if (words[0] != '\0')
+        return words;
+    return fails ? "it says no reason" : "the video is not complete";
+}
+
 int ted4_video_out_close(ted4_video_out *v, int keep, char *why, size_t why_size)
 {
+    const char *wrong;
     char words[200];
-    int status, bad;
+    int status;
 
     close(v->pipe);
     status = wait_for(v);
     first_words(v->messages, words, sizeof words);
     fclose(v->messages);
-    bad = v->broken || !WIFEXITED(status) || WEXITSTATUS(status) != 0;
-    if (bad && WIFEXITED(status) && WEXITSTATUS(status) == NO_FFMPEG)
+    wrong = fault(v, status, keep, words);
+    if (wrong != NULL && WIFEXITED(status) && WEXITSTATUS(status) == NO_FFMPEG)
         snprintf(why, why_size, "videos need the program ffmpeg, which cannot be started");
-    else if (bad)
-        snprintf(why, why_size, "ffmpeg failed%s%s", words[0] != '\0' ? ": " : "", words);
-    else if ((bad = keep && is_empty(v->file.temporary)))
-        snprintf(why, why_size, "ffmpeg wrote nothing");
-    if (bad || !keep) {
+    else if (wrong != NULL)
+        snprintf(why, why_size, "ffmpeg failed: %s", wrong);
+    if (wrong != NULL || !keep) {
         ted4_output_cancel(&v->file);
-    } else if (ted4_output_close(&v->file) != 0) {
-        snprintf(why, why_size, "%s", strerror(errno));
-        bad = 1;
+        return wrong != NULL ? -1 : 0;
     }
-    return bad ? -1 : 0;
+    if (ted4_output_close(&v->file) == 0)
+        return 0;
+    snprintf(why, why_size, "%s", strerror(errno));
+    return -1;
 }

@@ -36,6 +36,11 @@ full checkpoint "$bin/ted4enc" "$scene" -o b.ted4 $small --checkpoint c
 full stage1 "$bin/ted4enc" "$scene" -o b.ted4 $small --stage1 c
 full transcode "$bin/ted4enc" --transcode "$out/a.ted4" -o b.ted4
 full render "$bin/ted4dec" "$out/a.ted4" --render b.png --orbit 1
+if command -v ffmpeg >/dev/null; then
+    full video "$bin/ted4dec" "$out/a.ted4" --render b.mp4 --orbit 8
+else
+    skip full_video "there is no ffmpeg"
+fi
 full sheet "$bin/ted4eval" "$out/a.ted4" "$scene" --sheet b.png
 echo '[{"t":[0,1],"cam":[0,0,0]}]' >"$out/q.json"
 # Files before the one that does not fit stay.

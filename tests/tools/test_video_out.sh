@@ -15,7 +15,9 @@ camera() { printf '{"width":%d,"height":3,"fx":4,"fy":4,"cx":2,"cy":1,"R":[1,0,0
 echo "[$(camera 5 4 0), $(camera 5 5 1)]" >"$out/two.json"
 echo "[$(camera 5 4 0), $(camera 6 5 1)]" >"$out/mixed.json"
 
-# An ffmpeg that stores its input; FAIL=1: it fails; FAIL=2: it ends early as if all was well.
+# An ffmpeg that stores its input and writes the smallest whole video; FAIL=1: it fails; FAIL=2: it
+# ends early as if all was well; FAIL=3: its disk becomes full, as if all was well; FAIL=4: it
+# complains of what does no harm, as a loader of libraries may do.
 mkdir "$out/bin"
 cat >"$out/bin/ffmpeg" <<'END'
 #!/bin/sh
@@ -23,8 +25,14 @@ echo "$*" >"$KEEP/words"
 for last; do :; done
 [ "$FAIL" = 1 ] && { echo 'half' >"${last#file:}"; echo 'Unknown encoder' >&2; exit 1; }
 [ "$FAIL" = 2 ] && exit 0
+[ "$FAIL" = 4 ] && echo 'ffmpeg: libtinfo.so.6: no version information available' >&2
 cat >"$KEEP/pictures"
-echo video >"${last#file:}"
+{
+    printf '\0\0\0\10ftyp\0\0\0\11moovM\0\0\0\1mdat\0\0\0\0\0\0\0\22'
+    [ "$FAIL" = 3 ] || printf ab
+} >"${last#file:}"
+[ "$FAIL" = 3 ] && echo 'Error writing trailer: No space left on device' >&2
+exit 0
 END
 chmod +x "$out/bin/ffmpeg"
 KEEP=$out FAIL=0
@@ -32,7 +40,7 @@ export KEEP FAIL
 path=$PATH
 PATH=$out/bin:$PATH
 "$dec" "$vector" --render "$out/a.mp4" --camera "$out/two.json"
-equal complete "$(cat "$out/a.mp4")" video
+equal complete "$(wc -c <"$out/a.mp4" | tr -d ' ')" 35
 check words "$out/words" "-f rawvideo -pix_fmt rgb24 -s 5x3 -r " " -i pipe:0" \
     "-vf pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709,format=yuv420p" \
     "-color_range tv -colorspace bt709 -color_primaries bt709 -color_trc iec61966-2-1" \
@@ -51,6 +59,14 @@ expect fails 3 'b.mp4: ffmpeg failed: Unknown encoder' "$dec" "$vector" --render
 FAIL=2
 expect early 3 'b.mp4: ' "$dec" "$vector" --render "$out/b.mp4" --path "$out/two.json" --views 9000
 expect nothing 3 'b.mp4: ' "$dec" "$vector" --render "$out/b.mp4" --camera "$out/two.json"
+FAIL=3
+cp "$out/a.mp4" "$out/old"
+expect cut 3 'a.mp4: ffmpeg failed: Error writing trailer: No space left on device' "$dec" \
+    "$vector" --render "$out/a.mp4" --camera "$out/two.json" -f
+cmp -s "$out/a.mp4" "$out/old" && ok cut_stays || fail cut_stays "the video has changed"
+FAIL=4
+"$dec" "$vector" --render "$out/a.mp4" --camera "$out/two.json" -f
+equal harmless "$?" 0
 mkdir "$out/none"
 PATH=$path
 expect missing 3 'videos need the program ffmpeg' env PATH="$out/none" "$dec" "$vector" \
@@ -82,7 +98,7 @@ cat >"$out/bin/ffmpeg" <<'END'
 #!/bin/sh
 for last; do :; done
 cat >/dev/null
-echo video >"${last#file:}"
+cp "$KEEP/old" "${last#file:}"
 END
 chmod 600 "$out/a.mp4"
 ln -s a.mp4 "$out/l.mp4"
