@@ -9,8 +9,8 @@
  * program. */
 enum { TED4_LEFTOVERS = 8 };
 
-/* From now on SIGINT, SIGTERM and SIGHUP remove what was added, and then end the program as they
- * do by themselves. A signal that was ignored before stays ignored. */
+/* From now on SIGINT, SIGTERM, SIGHUP and SIGPIPE remove what was added, and then end the program
+ * as they do by themselves. A signal that was ignored before stays ignored. */
 void ted4_leftovers_watch(void);
 
 /* The file at path is not complete. path must stay as it is until ted4_leftovers_forget. writer:

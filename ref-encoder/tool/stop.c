@@ -69,6 +69,7 @@ void ted4_stop_on_signals(int quiet)
     for (int i = 0; i < N_SIGNALS; i++)
         if (sigaction(signals[i], NULL, &before) == 0 && before.sa_handler != SIG_IGN)
             sigaction(signals[i], &mine, NULL);
+    signal(SIGPIPE, SIG_IGN);
 }
 
 void ted4_stop_keep(void)

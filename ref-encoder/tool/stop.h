@@ -6,7 +6,9 @@
 #define TED4_STOP_H
 
 /* Installs the handlers. A signal that was ignored before, as SIGHUP under nohup, stays ignored.
- * quiet: no message is printed when a signal arrives. */
+ * From now on a pipe that nobody reads any more is an error of output like others, and does not end
+ * the program: a closed terminal ends what reads the messages too, before the last checkpoint is
+ * written. quiet: no message is printed when a signal arrives. */
 void ted4_stop_on_signals(int quiet);
 /* Training begins: from now on the first signal no longer ends the program. */
 void ted4_stop_keep(void);

@@ -522,8 +522,8 @@ static void test_signals(void **state)
     char path[256];
 
     (void)state;
-    for (int i = 0; i < 3; i++) {
-        end_while_writing((const int[]) { SIGINT, SIGTERM, SIGHUP }[i], 0);
+    for (int i = 0; i < 4; i++) {
+        end_while_writing((const int[]) { SIGINT, SIGTERM, SIGHUP, SIGPIPE }[i], 0);
         assert_int_equal(count_files(), 0);
     }
     end_while_writing(SIGHUP, 1);

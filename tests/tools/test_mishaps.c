@@ -228,13 +228,36 @@ static void test_full_stdout(void **state)
     gone("out/x.ted4");
 }
 
+/* Whoever read standard output has ended: what is printed there is lost, which is an error. */
+static void test_closed_stdout(void **state)
+{
+    int ends[2], status;
+
+    (void)state;
+    begin_test();
+    fflush(stdout);
+    assert_int_equal(pipe(ends), 0);
+    close(ends[0]);
+
+    const int out = dup(STDOUT_FILENO);
+
+    assert_true(out >= 0);
+    assert_true(dup2(ends[1], STDOUT_FILENO) >= 0);
+    close(ends[1]);
+    status = run("--check", 0);
+    assert_true(dup2(out, STDOUT_FILENO) >= 0);
+    close(out);
+    assert_int_equal(status, 3);
+    expect_words("standard output: Broken pipe");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_killed),          cmocka_unit_test(test_killed_deciding),
         cmocka_unit_test(test_full_checkpoint), cmocka_unit_test(test_full_output),
         cmocka_unit_test(test_full_log),        cmocka_unit_test(test_full_video_cache),
-        cmocka_unit_test(test_full_stdout),
+        cmocka_unit_test(test_full_stdout),     cmocka_unit_test(test_closed_stdout),
     };
 
     return cmocka_run_group_tests_name("kill and full disk", tests, set_up, tear_down);

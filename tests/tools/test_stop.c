@@ -19,6 +19,9 @@ static const char *const options[] = {
 };
 enum { N_OPTIONS = (int)(sizeof options / sizeof options[0]) };
 
+/* Where standard error of the next child goes; negative: into the file err. */
+static int messages = -1;
+
 static pid_t begin(const char *one, const char *two, const char *three)
 {
     const char *argv[N_OPTIONS + 6] = { NULL };
@@ -38,7 +41,9 @@ static pid_t begin(const char *one, const char *two, const char *three)
     argv[n++] = two;
     argv[n] = three;
 
-    const int err = open(tiny_path(&folder, "err"), O_WRONLY | O_CREAT | O_TRUNC, 0666);
+    const int err = messages >= 0
+                        ? messages
+                        : open(tiny_path(&folder, "err"), O_WRONLY | O_CREAT | O_TRUNC, 0666);
 
     snprintf(path, sizeof path, "%s/ted4enc", build);
     if (err < 0 || dup2(err, STDERR_FILENO) < 0 || chdir(folder.path) != 0)
@@ -303,12 +308,36 @@ static void test_hung_up_twice(void **state)
     expect_files("c l");
 }
 
+/* Where messages go to a program, as to tee, the end of the terminal ends that too. Nobody reads
+ * what ted4enc says of its last checkpoint: it is written all the same. */
+static void test_unheard(void **state)
+{
+    const moment m = { "\"step\":250,", 0 };
+    int ends[2];
+    pid_t child;
+
+    (void)state;
+    begin_test();
+    assert_int_equal(pipe(ends), 0);
+    assert_int_equal(fcntl(ends[0], F_SETFD, FD_CLOEXEC), 0);
+    messages = ends[1];
+    child = begin("--checkpoint", "out/c", NULL);
+    messages = -1;
+    close(ends[1]);
+    wait_for(&m);
+    close(ends[0]);
+    kill(child, SIGHUP);
+    assert_int_equal(finish(child), 128 + SIGHUP);
+    expect_files("c l");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_loading),          cmocka_unit_test(test_moments),
         cmocka_unit_test(test_no_checkpoint),    cmocka_unit_test(test_again),
-        cmocka_unit_test(test_again_in_a_write), cmocka_unit_test(test_hung_up_twice)
+        cmocka_unit_test(test_again_in_a_write), cmocka_unit_test(test_hung_up_twice),
+        cmocka_unit_test(test_unheard)
     };
 
     /* A shell that runs commands in the background, or nohup, makes them ignore signals. */
