@@ -63,7 +63,7 @@ PHASES = ted4_dataset_load ted4_dataset_verify ted4_header_settle ted4_trainer_i
         ted4_activation_begin ted4_stage2_begin ted4_integer_begin ted4_model_search \
         ted4_refine_prior_bits ted4_rd_prune ted4_trainer_distortion ted4_distortion_gradient \
         ted4_export_scene ted4_encode ted4_encode_with_text ted4_trainer_preview ted4_run_log_step \
-        ted4_checkpoint_write ted4_verify ted4_file_write \
+        ted4_checkpoint_write ted4_verify ted4_file_keep \
         $(foreach l,base v3 v4,ted4_raster_blend_$l ted4_raster_blend_bwd_$l) ted4_threads_init \
         ted4_threads_count ted4_threads_finish
 $B/bench/phases: $B/bench/phases.o $B/bench/recorder.o $B/ref-encoder/tool/ted4enc.o \

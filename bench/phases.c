@@ -153,9 +153,9 @@ BETWEEN(PHASE_VERIFY, int, ted4_verify,
         (const ted4_scene *s, const uint8_t *bytes, size_t size, const ted4_parallel *p,
          ted4_verified *v, char *why, size_t why_size),
         (s, bytes, size, p, v, why, why_size))
-BETWEEN(PHASE_WRITE, int, ted4_file_write,
-        (const char *path, const void *data, size_t size, char *why, size_t why_size),
-        (path, data, size, why, why_size))
+BETWEEN(PHASE_WRITE, int, ted4_file_keep,
+        (const char *path, int force, const void *data, size_t size, char *why, size_t why_size),
+        (path, force, data, size, why, why_size))
 
 #define MARKED(flag, name, parameters, arguments)   \
     extern __typeof__(name) __wrap_##name;          \

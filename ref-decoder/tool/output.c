@@ -68,10 +68,28 @@ static FILE *create(const char *temporary, int replaces, mode_t mode)
     return f;
 }
 
+/* Opens the temporary file of o->path, with this mode if the file will replace one. Returns 0, or
+ * -1 with errno set. */
+static int open_temporary(ted4_output *o, int replaces, mode_t mode)
+{
+    errno = EEXIST;
+    for (int i = 0; i < MOST_NAMES && errno == EEXIST; i++) {
+        if (name_temporary(o->temporary, o->path, i) != 0)
+            return -1;
+        ted4_leftovers_add(o->temporary, 0);
+        o->file = create(o->temporary, replaces, mode);
+        if (o->file != NULL)
+            return 0;
+        ted4_leftovers_forget(o->temporary);
+    }
+    return -1;
+}
+
 int ted4_output_open(ted4_output *o, const char *path)
 {
     struct stat there;
 
+    o->is_new = 0;
     if (find_place(o->path, path) != 0)
         return -1;
 
@@ -81,17 +99,7 @@ int ted4_output_open(ted4_output *o, const char *path)
         errno = S_ISDIR(there.st_mode) ? EISDIR : EOPNOTSUPP;
         return -1;
     }
-    errno = EEXIST;
-    for (int i = 0; i < MOST_NAMES && errno == EEXIST; i++) {
-        if (name_temporary(o->temporary, o->path, i) != 0)
-            return -1;
-        ted4_leftovers_add(o->temporary, 0);
-        o->file = create(o->temporary, replaces, replaces ? there.st_mode : 0);
-        if (o->file != NULL)
-            return 0;
-        ted4_leftovers_forget(o->temporary);
-    }
-    return -1;
+    return open_temporary(o, replaces, replaces ? there.st_mode : 0);
 }
 
 int ted4_output_exists(const char *path)
@@ -99,6 +107,18 @@ int ted4_output_exists(const char *path)
     struct stat there;
 
     return lstat(path, &there) == 0;
+}
+
+int ted4_output_open_new(ted4_output *o, const char *path)
+{
+    o->is_new = 1;
+    if (ted4_output_exists(path)) {
+        errno = EEXIST;
+        return -1;
+    }
+    if (fits(snprintf(o->path, TED4_PATH_SIZE, "%s", path)) != 0)
+        return -1;
+    return open_temporary(o, 0, 0);
 }
 
 static void discard(const char *temporary)
@@ -116,6 +136,26 @@ void ted4_output_cancel(ted4_output *o)
     errno = why;
 }
 
+/* Gives the temporary file its name. A link replaces nothing; where the file system has none, a
+ * file that appears in the moment before the renaming is replaced. Returns 0, or -1 with errno
+ * set. */
+static int give_name(const ted4_output *o)
+{
+    if (o->is_new) {
+        if (link(o->temporary, o->path) == 0) {
+            unlink(o->temporary);
+            return 0;
+        }
+        if (errno == EEXIST)
+            return -1;
+        if (ted4_output_exists(o->path)) {
+            errno = EEXIST;
+            return -1;
+        }
+    }
+    return rename(o->temporary, o->path);
+}
+
 int ted4_output_close(ted4_output *o)
 {
     if (fflush(o->file) != 0 || ferror(o->file)) {
@@ -124,7 +164,7 @@ int ted4_output_close(ted4_output *o)
         ted4_output_cancel(o);
         return -1;
     }
-    if (fclose(o->file) == 0 && rename(o->temporary, o->path) == 0) {
+    if (fclose(o->file) == 0 && give_name(o) == 0) {
         ted4_leftovers_forget(o->temporary);
         return 0;
     }

@@ -13,6 +13,7 @@ enum { TED4_PATH_SIZE = 4096 };
 typedef struct {
     FILE *file; /* open for binary writing */
     char path[TED4_PATH_SIZE], temporary[TED4_PATH_SIZE];
+    int is_new; /* 1: it replaces nothing */
 } ted4_output;
 
 /* Returns 1 if there is something at path, be it a link that leads nowhere. */
@@ -22,8 +23,12 @@ int ted4_output_exists(const char *path);
  * the mode of the file that it will replace. Returns 0, or -1 with errno set: EISDIR or EOPNOTSUPP
  * where path is a folder, or a device or a pipe, which a file would replace. */
 int ted4_output_open(ted4_output *o, const char *path);
-/* Flushes and closes the temporary file and gives it its name, replacing an existing file but not
- * a link to it. Returns 0, or -1 with errno set and the temporary file removed. */
+/* As ted4_output_open, for a file that replaces nothing: errno is EEXIST if something is at path,
+ * also when the file is closed and something has appeared there meanwhile. */
+int ted4_output_open_new(ted4_output *o, const char *path);
+/* Flushes and closes the temporary file and gives it its name. Unless the file is a new one, it
+ * replaces an existing file, but not a link to it. Returns 0, or -1 with errno set and the
+ * temporary file removed. */
 int ted4_output_close(ted4_output *o);
 /* As ted4_output_close, but the bytes lie on the medium before the file has its name: after a
  * failure of power the file is the one that was there or the new one. For what takes long to make;

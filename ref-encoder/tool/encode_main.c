@@ -145,8 +145,8 @@ static int run(const encoder *e, ted4_trainer *t)
         bad = ted4_training_go(&training, 2) != 0 || ted4_training_code(&training, &coded) != 0;
     /* The file is written before the log is closed, so that it is not lost if closing fails. */
     if (leads(e->exchange))
-        bad = bad || ted4_file_write(r->out, coded.bytes, coded.size, training.why,
-                                     sizeof training.why) != 0;
+        bad = bad || ted4_file_keep(r->out, r->force, coded.bytes, coded.size, training.why,
+                                    sizeof training.why) != 0;
     bad = ted4_training_end(&training, bad) != 0;
     if (!bad) {
         say_exchange(e);
@@ -422,8 +422,9 @@ static int transcode(const encoder *e)
     if (dropped > 0)
         ted4_teller_error(e->teller, "warning: %zu unknown chunk%s %s left out", dropped,
                           ted4_s(dropped), dropped == 1 ? "is" : "are");
-    status = ted4_file_write(r->out, out, out_size, text, sizeof text) != 0 ? complain(e, text)
-                                                                            : TED4_EXIT_FINE;
+    status = ted4_file_write(r->out, r->force, out, out_size, text, sizeof text) != 0
+                 ? complain(e, text)
+                 : TED4_EXIT_FINE;
     if (status == TED4_EXIT_FINE && r->json)
         status = report_transcoded(e, out, out_size);
     else if (status == TED4_EXIT_FINE)

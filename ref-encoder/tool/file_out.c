@@ -6,9 +6,13 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "tool/json_string.h"
 #include "tool/output.h"
+
+/* Names that are tried beside one that is taken. */
+enum { MOST_NAMES = 100 };
 
 /* Permissions alone do not tell whether a file can be written (root, /proc, full file systems), so
  * the temporary file is created and removed again. */
@@ -39,16 +43,63 @@ int ted4_file_writable(const char *path, int force, const char *instead, char *w
     return 0;
 }
 
-int ted4_file_write(const char *path, const void *data, size_t size, char *why, size_t why_size)
+/* Returns 0, or -1 with errno set. */
+static int put(const char *path, int force, const void *data, size_t size)
 {
     ted4_output o;
-    int bad = ted4_output_open(&o, path) != 0;
 
-    if (!bad) {
-        fwrite(data, 1, size, o.file);
-        bad = ted4_output_keep(&o) != 0;
-    }
-    if (bad)
+    if ((force ? ted4_output_open(&o, path) : ted4_output_open_new(&o, path)) != 0)
+        return -1;
+    fwrite(data, 1, size, o.file);
+    return ted4_output_keep(&o);
+}
+
+int ted4_file_write(const char *path, int force, const void *data, size_t size, char *why,
+                    size_t why_size)
+{
+    if (put(path, force, data, size) == 0)
+        return 0;
+    if (!force && errno == EEXIST)
+        snprintf(why, why_size, "%s: exists; -f overwrites", path);
+    else
         snprintf(why, why_size, "%s: %s", path, strerror(errno));
-    return bad ? -1 : 0;
+    return -1;
+}
+
+/* Makes the name beside path that holds the number of this process, before the suffix: the first
+ * one, or another if n is above 0. */
+static void name_beside(char out[TED4_PATH_SIZE], const char *path, int n)
+{
+    const char *const suffix = strrchr(path, '.');
+    const size_t stem = suffix != NULL ? (size_t)(suffix - path) : strlen(path);
+    char number[40] = "";
+
+    if (n > 0)
+        snprintf(number, sizeof number, "-%d", n);
+    snprintf(out, TED4_PATH_SIZE, "%.*s.%ld%s%s", (int)stem, path, (long)getpid(), number,
+             path + stem);
+}
+
+int ted4_file_keep(const char *path, int force, const void *data, size_t size, char *why,
+                   size_t why_size)
+{
+    char beside[TED4_PATH_SIZE];
+    int error = put(path, force, data, size) == 0 ? 0 : errno;
+    const int taken = error == EEXIST || error == EISDIR || error == EOPNOTSUPP;
+
+    if (error == 0)
+        return 0;
+    for (int i = 0; i < MOST_NAMES && taken && error != 0; i++) {
+        name_beside(beside, path, i);
+        error = put(beside, 0, data, size) == 0 ? 0 : errno;
+        if (error != EEXIST)
+            break;
+    }
+    if (error == 0)
+        snprintf(why, why_size,
+                 "%s holds the result: %s has been made by another program meanwhile, and stays",
+                 beside, path);
+    else
+        snprintf(why, why_size, "%s: %s", path, strerror(error));
+    return -1;
 }

@@ -371,7 +371,7 @@ static int write_out(const ted4_edit *e, const settings *s)
     if (ted4_edit_write(e, &out, &size, &text) != 0)
         return failed(s->output, text);
     if (ted4_file_writable(s->output, s->force, "", why, sizeof why) != 0 ||
-        ted4_file_write(s->output, out, size, why, sizeof why) != 0) {
+        ted4_file_write(s->output, s->force, out, size, why, sizeof why) != 0) {
         fprintf(stderr, "ted4edit: %s\n", why);
         code = TED4_EXIT_TOOL;
     } else if (!s->quiet) {

@@ -1,10 +1,13 @@
-/* test_output.c - tool/output.h: what is in the way of an output, or of its temporary file, stays.
+/* test_output.c - tool/output.h, tool/file_out.h: what is in the way of an output, or of its
+ * temporary file, stays.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <errno.h>
+#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 #include "test.h"
 #include "temporary.h"
+#include "tool/file_out.h"
 #include "tool/output.h"
 
 static char folder[TEMPORARY_SIZE];
@@ -58,6 +61,104 @@ static void test_no_file(void **state)
     assert_int_equal(rmdir(path), 0);
 }
 
+static void make(const char *path, const char *text)
+{
+    FILE *const f = fopen(path, "w");
+
+    assert_non_null(f);
+    assert_true(fputs(text, f) > 0);
+    assert_int_equal(fclose(f), 0);
+}
+
+/* Asserts that the file has this text, and removes it. */
+static void expect_text(const char *path, const char *want)
+{
+    char text[16] = "";
+    FILE *const f = fopen(path, "r");
+
+    assert_non_null(f);
+    assert_non_null(fgets(text, sizeof text, f));
+    fclose(f);
+    assert_string_equal(text, want);
+    assert_int_equal(remove(path), 0);
+}
+
+/* link of the system, which fails with this number unless it is 0. */
+static int unlinked;
+
+int __real_link(const char *from, const char *to);
+int __wrap_link(const char *from, const char *to);
+
+int __wrap_link(const char *from, const char *to)
+{
+    errno = unlinked;
+    return unlinked != 0 ? -1 : __real_link(from, to);
+}
+
+/* A new file replaces nothing, be it that it appears while the new one is written, or a link that
+ * leads nowhere; on file systems without links, too. */
+static void test_new(void **state)
+{
+    static const int systems[] = { 0, EPERM, EOPNOTSUPP, ENOSYS };
+    char path[256];
+    ted4_output o;
+
+    (void)state;
+    snprintf(path, sizeof path, "%s/x.ted4", folder);
+    for (size_t i = 0; i < sizeof systems / sizeof systems[0]; i++) {
+        unlinked = systems[i];
+        assert_int_equal(ted4_output_open_new(&o, path), 0);
+        assert_true(fputs("ours", o.file) > 0);
+        assert_int_equal(ted4_output_close(&o), 0);
+        assert_int_equal(ted4_output_exists(o.temporary), 0);
+        assert_int_equal(ted4_output_open_new(&o, path), -1);
+        assert_int_equal(errno, EEXIST);
+        expect_text(path, "ours");
+        assert_int_equal(ted4_output_open_new(&o, path), 0);
+        make(path, "theirs");
+        assert_int_equal(ted4_output_close(&o), -1);
+        assert_int_equal(errno, EEXIST);
+        expect_text(path, "theirs");
+        assert_int_equal(ted4_output_open_new(&o, path), 0);
+        assert_int_equal(symlink("nowhere", path), 0);
+        assert_int_equal(ted4_output_keep(&o), -1);
+        assert_int_equal(errno, EEXIST);
+        assert_int_equal(ted4_output_open_new(&o, path), -1);
+        assert_int_equal(errno, EEXIST);
+        assert_int_equal(remove(path), 0);
+    }
+    unlinked = 0;
+}
+
+/* What has taken long to make gets a name beside the one that is taken, and the message says it. */
+static void test_kept_beside(void **state)
+{
+    char path[256], beside[2][300], why[1024];
+
+    (void)state;
+    snprintf(path, sizeof path, "%s/x.ted4", folder);
+    snprintf(beside[0], sizeof beside[0], "%s/x.%ld.ted4", folder, (long)getpid());
+    snprintf(beside[1], sizeof beside[1], "%s/x.%ld-1.ted4", folder, (long)getpid());
+    make(path, "theirs");
+    assert_int_equal(ted4_file_write(path, 0, "ours", 4, why, sizeof why), -1);
+    assert_non_null(strstr(why, "x.ted4: exists; -f overwrites"));
+    for (int i = 0; i < 2; i++) {
+        assert_int_equal(ted4_file_keep(path, 0, "ours", 4, why, sizeof why), -1);
+        assert_memory_equal(why, beside[i], strlen(beside[i]));
+    }
+    expect_text(beside[0], "ours");
+    expect_text(beside[1], "ours");
+    assert_int_equal(ted4_file_keep(path, 1, "ours", 4, why, sizeof why), 0);
+    expect_text(path, "ours");
+    assert_int_equal(mkdir(path, 0700), 0);
+    assert_int_equal(ted4_file_keep(path, 1, "ours", 4, why, sizeof why), -1);
+    expect_text(beside[0], "ours");
+    assert_int_equal(rmdir(path), 0);
+    snprintf(path, sizeof path, "%s/none/x.ted4", folder);
+    assert_int_equal(ted4_file_keep(path, 0, "ours", 4, why, sizeof why), -1);
+    assert_non_null(strstr(why, "none/x.ted4: No such file or directory"));
+}
+
 /* fsync of the system, which fails with this number unless it is 0. */
 static int sync_fails, synced;
 
@@ -92,6 +193,7 @@ static void test_keep(void **state)
     FILE *f;
 
     (void)state;
+    synced = 0;
     snprintf(path, sizeof path, "%s/x.ted4", folder);
     assert_int_equal(ted4_output_open(&o, path), 0);
     assert_true(fputs("old", o.file) > 0);
@@ -126,7 +228,8 @@ static int folder_remove(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = { cmocka_unit_test(test_name_taken),
-                                        cmocka_unit_test(test_no_file),
+                                        cmocka_unit_test(test_no_file), cmocka_unit_test(test_new),
+                                        cmocka_unit_test(test_kept_beside),
                                         cmocka_unit_test(test_keep) };
 
     return cmocka_run_group_tests(tests, folder_make, folder_remove);

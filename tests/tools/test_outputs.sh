@@ -18,6 +18,7 @@ small="--preset draft --iterations 60,40 --capacity fixed --seed 1 -j 1 -q --set
 "$bin/ted4scene" pop -o "$scene" --size 32x24 --frames 4 --cameras 5 --test-cameras 1 -j 1 \
     2>/dev/null
 "$bin/ted4enc" "$scene" -o "$out/a.ted4" $small --cameras --thumbnail || fail encode "no file"
+"$bin/ted4enc" "$scene" -o "$out/plain.ted4" $small || fail encode "no file"
 mkdir "$out/at"
 
 # ---- a limit of file sizes: 1 KiB ----
@@ -129,6 +130,27 @@ says="is a pipe or a device, expected a file name"
 special edit "$bin/ted4edit" "$out/a.ted4" -o b.ted4 -f --title x
 special encode "$bin/ted4enc" "$scene" -o b.ted4 $small -f
 special checkpoint "$bin/ted4enc" "$scene" -o c.ted4 $small -f --checkpoint b.point
+rm -rf "$out/at"; mkdir "$out/at"
+
+# ---- a file that appears during a training stays, and so does the training's ----
+# The training waits until somebody reads its log.
+mkfifo "$out/at/log"
+"$bin/ted4enc" "$scene" -o "$out/at/b.ted4" $small --log "$out/at/log" --json >"$out/json" \
+    2>"$out/err" &
+encoder=$!
+exec 3<"$out/at/log"
+echo theirs >"$out/at/b.ted4"
+cat <&3 >/dev/null
+exec 3<&-
+wait $encoder
+equal appeared "$?" 3
+equal appeared_stays "$(cat "$out/at/b.ted4")" theirs
+equal appeared_kept "$(ls "$out/at")" "b.$encoder.ted4
+b.ted4
+log"
+cmp -s "$out/at/b.$encoder.ted4" "$out/plain.ted4" && ok appeared_same || fail appeared_same differs
+check appeared_says "$out/err" "ted4enc: $out/at/b.$encoder.ted4 holds the result: $out/at/b.ted4 "
+check appeared_json "$out/json" "{\"error\":\"$out/at/b.$encoder.ted4 holds the result: "
 rm -rf "$out/at"; mkdir "$out/at"
 
 # Nothing is drawn before it is known that all pictures can be written.
