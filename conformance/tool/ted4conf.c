@@ -179,6 +179,8 @@ static int run(int argc, char **argv)
         }
     if (o.decoder == NULL || optind < argc)
         return usage("run takes --decoder and no operand");
+    if (o.once && o.second != NULL)
+        return usage("--second: goes without --once, which leaves the second run out");
     return conf_run(&o);
 }
 

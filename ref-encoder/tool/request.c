@@ -491,6 +491,8 @@ static int check(const ted4_request *r, const pending *p)
         return complain("--resume: only with --checkpoint (see --help)");
     if (r->checkpoint_every >= 0 && r->checkpoint == NULL)
         return complain("--checkpoint-every: only with --checkpoint (see --help)");
+    if (r->quiet && r->verbose)
+        return complain("-q and -v: only one of them (see --help)");
     return TED4_REQUEST_GO;
 }
 

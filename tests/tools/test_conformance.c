@@ -356,6 +356,16 @@ static void version(void **state)
     assert_string_equal(last, "ted4conf " TED4_VERSION "\n");
 }
 
+/* Without a second run nothing is tested in its environment. */
+static void options_in_vain(void **state)
+{
+    char last[1024];
+
+    (void)state;
+    assert_int_equal(conf(last, sizeof last, "run -d false --once --second TED4_KERNEL=plain"), 3);
+    assert_non_null(strstr(said, "--second: goes without --once"));
+}
+
 /* A list that includes another one, and lists that include each other. */
 static void lists(void **state)
 {
@@ -390,6 +400,7 @@ int main(void)
         cmocka_unit_test(limits),
         cmocka_unit_test(levels_above),
         cmocka_unit_test(version),
+        cmocka_unit_test(options_in_vain),
         cmocka_unit_test(lists),
     };
 

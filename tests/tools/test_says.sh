@@ -59,6 +59,9 @@ ended json_transcode "$out/there.ted4: exists; -f overwrites" --transcode \
 "$enc" --json >"$out/json" 2>/dev/null
 equal json_usage "$? $(cat "$out/json")" "3 "
 
+expect quiet_and_verbose 3 'ted4enc: -q and -v: only one of them' \
+    "$enc" "$out/scene" --check -q -v
+
 # If something is wrong, only that is reported.
 mkdir "$out/broken"
 cp -R "$out/scene/." "$out/broken"
