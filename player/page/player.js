@@ -86,7 +86,7 @@ export class Player {
       const [{ scene, use }] = await Promise.all([decoding, this.#started]);
       const chunks = chunksOf(bytes), cameras = camerasOf(chunks), up = cameras.up ?? UP;
       const isSeen = cameras.cameras.length + cameras.path.length > 0;
-      const start = isSeen ? null : startCamera(await scene.gaussians(0, 1), up);
+      const start = isSeen ? null : startCamera(await scene.gaussians(0, 1), up, scene.info);
       return { bytes, scene, use, chunks, cameras, up, start };
     } catch (error) {
       // Nobody will have the scene, which may be decoded only after the drawing has failed.

@@ -220,10 +220,29 @@ test("of many Gaussians at most 4096 say where a viewer begins", () => {
         return array[i];
       },
     });
-    const { distance } = startCamera({ n, opacity, mean: [values, values, values] }, [0, -1, 0]);
+    const g = { n, opacity, mean: [values, values, values] };
+    const { distance } = startCamera(g, [0, -1, 0], { origin: [0, 0, 0], exponent: 0 });
     assert.ok(looked.size <= 4096 && looked.size > Math.min(n, 4096) / 2, `${looked.size}`);
     assert.ok(n === 1 || Math.abs(distance - 2.2 * 0.4) < 0.01, `${distance}`);
   }
+});
+
+test("where nothing shows at the first time, a viewer begins before the whole scene", () => {
+  const info = { origin: [1, 2, 3], exponent: 4 };
+  const faint = { n: 2, opacity: [0.05, 0.1], mean: [[5, 6], [5, 6], [5, 6]] };
+  const none = { n: 0, opacity: [], mean: [[], [], []] };
+  for (const g of [faint, none]) {
+    const { camera, distance } = startCamera(g, [0, -1, 0], info);
+    assert.equal(distance, 2.2 * 16);
+    const centre = centreOf(camera);
+    near([Math.hypot(...centre.map((v, i) => v - info.origin[i]))], [distance]);
+    near(forward(camera), info.origin.map((v, i) => (v - centre[i]) / distance));
+  }
+  // What shows is at one place, which does not say how far to go back.
+  const alone = { n: 3, opacity: [0, 1, 0], mean: [[5, 6, 7], [5, 6, 7], [5, 6, 7]] };
+  const { camera, distance } = startCamera(alone, [0, -1, 0], info);
+  assert.equal(distance, 2.2 * 16);
+  near([Math.hypot(...centreOf(camera).map((v) => v - 6))], [distance]);
 });
 
 test("a module that could not be loaded is loaded again for the next file", async () => {
