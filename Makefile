@@ -147,6 +147,7 @@ $B/tests/tools/test_install $B/tests/tools/test_library: | $(PROGS) $(SHARED) $B
 $B/tests/tools/test_look: $(ENC_TOOL:%.c=$B/%.o)
 $B/tests/tools/test_output: $B/ref-encoder/tool/file_out.o
 $B/tests/tools/test_output: override LDFLAGS += -Wl,--wrap=fsync,--wrap=link
+$B/tests/tools/test_conf_folder: | $B/ted4conf
 $B/tests/tools/test_kernels $B/tests/tools/test_outputs: | $B/ted4conf $B/ted4tolerance
 $B/tests/tools/test_stop: $B/ref-encoder/tool/stop.o
 $B/tests/tools/test_thumbnail: $B/ref-encoder/tool/describe.o

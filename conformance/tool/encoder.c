@@ -4,10 +4,9 @@
 #include "encoder.h"
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 #include "judge.h"
+#include "scratch.h"
 #include "ted4.h"
 
 static void wrong(int *n, const char *what, const char *why)
@@ -86,21 +85,17 @@ static json_t *ask(const conf_encode_options *o, const char *path, int *n)
 
 int conf_encode(const conf_encode_options *o)
 {
-    const char *const tmp = getenv("TMPDIR");
     char folder[CONF_PATH], path[CONF_PATH];
     size_t size = 0;
     json_t *answer;
     int n = 0, level = 0;
 
-    conf_path(folder, "%s/ted4conf-XXXXXX", tmp != NULL ? tmp : "/tmp");
-    if (mkdtemp(folder) == NULL)
-        conf_die("%s: cannot be made", folder);
+    conf_scratch_make(folder);
     conf_path(path, "%s/out.ted4", folder);
     answer = ask(o, path, &n);
     if (answer != NULL)
         judge_file(answer, path, &n, &size, &level);
-    unlink(path);
-    rmdir(folder);
+    conf_scratch_remove();
     json_decref(answer);
     printf("%s: %zu bytes, level %d: %s\n", o->scene, size, level,
            n == 0 ? "conforms" : "does not conform");

@@ -54,7 +54,7 @@ static void change_running(int from, int to)
  * ignored, or by its own end. */
 static void watch(void)
 {
-    static const int signals[] = { SIGINT, SIGTERM, SIGHUP };
+    static const int signals[] = { SIGINT, SIGTERM, SIGHUP, SIGPIPE };
     static int watched;
     struct sigaction mine, before;
 

@@ -31,7 +31,7 @@ typedef struct {
 } conf_process;
 
 /* argv ends with NULL. What runs is ended together with the caller, also where a signal ends that:
- * SIGINT, SIGTERM or SIGHUP, unless it is ignored. */
+ * SIGINT, SIGTERM, SIGHUP or SIGPIPE, unless it is ignored. */
 void conf_process_start(conf_process *p, const conf_process_options *o, const char *const *argv);
 /* Waits up to ms milliseconds for an event in n processes (those with pid 0 are skipped), reads
  * their output, and kills those that exceed their time limit. Returns the index of a process that

@@ -11,6 +11,7 @@
 #include <unistd.h>
 #include "judge_t.h"
 #include "recipe.h"
+#include "scratch.h"
 #include "tool/clock.h"
 #include "vector.h"
 
@@ -474,7 +475,6 @@ int conf_run(const conf_run_options *o)
     conf_run_result r = { .options = o };
     runner w = { .r = &r };
     char vectors[CONF_PATH];
-    const char *tmp = getenv("TMPDIR");
 
     conf_path(vectors, "%s/vectors", o->suite);
     r.entry = conf_suite_load(vectors, o->list, &r.n);
@@ -484,15 +484,13 @@ int conf_run(const conf_run_options *o)
     for (int i = RUN_FIRST; i <= RUN_LENIENT; i++)
         w.options[i] = (conf_process_options) { o->decoder, i == RUN_SECOND ? o->second : NULL,
                                                 o->timeout, o->memory };
-    conf_path(w.folder, "%s/ted4conf-XXXXXX", tmp != NULL ? tmp : "/tmp");
-    if (mkdtemp(w.folder) == NULL)
-        conf_die("%s: cannot be made", w.folder);
+    conf_scratch_make(w.folder);
     r.capabilities = ask_capabilities(&w);
     if (r.capabilities != NULL)
         run_all(&w);
     for (size_t i = 0; r.capabilities == NULL && i < r.n; i++)
         r.verdict[i] = (conf_verdict) { CONF_NO_ANSWER, "no capabilities" };
-    rmdir(w.folder);
+    conf_scratch_remove();
     sum_up(&r);
     write_reports(&r);
     json_decref(r.capabilities);

@@ -10,8 +10,7 @@ ref-decoder/tool/video_out.c   fork execlp
 ref-encoder/data/video.c       getenv fork execlp
 tools/scene/ray_set.c          fork execlp
 conformance/tool/process.c     fork execv setenv
-conformance/tool/run.c         getenv
-conformance/tool/encoder.c     getenv
+conformance/tool/scratch.c     getenv fork execl
 conformance/tool/mutant_build.c getenv system
 conformance/tool/mutants.c     fork
 fuzz/scene_folder.c            getenv

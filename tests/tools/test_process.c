@@ -73,7 +73,7 @@ static int status_of(pid_t child)
 /* A runner that a signal ends takes the decoders with it: nobody else would end one that hangs. */
 static void test_runner_ended(void **state)
 {
-    static const int signals[] = { SIGINT, SIGTERM, SIGHUP };
+    static const int signals[] = { SIGINT, SIGTERM, SIGHUP, SIGPIPE };
     const conf_process_options o = { "sleep 60; exit 0;", NULL, 60, 0 };
 
     (void)state;
