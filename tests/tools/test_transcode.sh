@@ -94,7 +94,7 @@ expect alone_without_output 3 'does not go with --transcode' \
 cmp -s "$grid" "$out/kept.ted4" && [ ! -e "$out/log" ] && ok alone_writes_nothing ||
     fail alone_writes_nothing "a file"
 expect goes_with 0 '"bytes":' "$enc" --transcode "$grid" --profile main -o "$out/a.ted4" -f -j 1 \
-    -q -v --json
+    -v --json
 # The JSON object says about the new file what that of a training says about its file.
 for profile in main compact; do
     "$enc" --transcode "$grid" --profile $profile -o "$out/a.ted4" -f -q --json >"$out/said" 2>&1
