@@ -10,7 +10,8 @@
 
 /* Times are scaled so that the first is 0 and the last is 1. */
 #define SAME_TIME   2e-6 /* two roundings of one time to six digits differ by 1e-6 */
-#define UNIFORM     1e-3 /* largest distance from j / (n - 1) that counts as uniform */
+#define UNIFORM     1e-3 /* largest distance from j / (n - 1) that counts as uniform, */
+#define MOST_OFF    0.25 /* but at most so many steps: a missing time shifts others by up to half */
 #define ON_GRID     0.02 /* largest distance from a position of a finer grid, in steps */
 #define GRID_EFFORT 4    /* the step of the finest grid tried is the smallest gap divided by this */
 
@@ -67,11 +68,12 @@ static int fits(const double *u, size_t n, double steps, double tolerance)
  * frame. */
 static uint32_t find_steps(const double *u, size_t n)
 {
+    const double off = fmin(UNIFORM, MOST_OFF / (double)(n - 1));
     double gap = 1;
     int uniform = 1;
 
     for (size_t j = 0; j < n; j++) {
-        uniform = uniform && fabs(u[j] - (double)j / (double)(n - 1)) <= UNIFORM;
+        uniform = uniform && fabs(u[j] - (double)j / (double)(n - 1)) <= off;
         gap = j > 0 ? fmin(gap, u[j] - u[j - 1]) : gap;
     }
     if (uniform && n <= TED4_MAX_FRAMES)

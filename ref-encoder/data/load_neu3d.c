@@ -15,8 +15,6 @@
 
 enum { MOST_FRAMES = 300 }; /* the frames used in published results on these scenes */
 
-static const double VIDEO_RATE = 30; /* frames per second of every scene of the data set */
-
 typedef struct {
     ted4_raw_scene *scene;
     const char *folder;
@@ -123,7 +121,6 @@ int ted4_load_neu3d(ted4_raw_scene *s, const char *folder, ted4_message *m)
     memset(&n, 0, sizeof n);
     s->layout = "neu3d";
     s->timed = 1;
-    s->rate = VIDEO_RATE;
     n.scene = s;
     n.folder = folder;
     n.m = m;

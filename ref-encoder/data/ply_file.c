@@ -26,7 +26,14 @@ static const struct {
 };
 
 enum { X, Y, Z, RED, GREEN, BLUE, N_WANTED };
-static const char *const wanted[N_WANTED] = { "x", "y", "z", "red", "green", "blue" };
+static const char *const wanted[N_WANTED][3] = {
+    { "x" },
+    { "y" },
+    { "z" },
+    { "red", "diffuse_red", "r" },
+    { "green", "diffuse_green", "g" },
+    { "blue", "diffuse_blue", "b" },
+};
 
 typedef struct {
     const char *path;
@@ -80,8 +87,9 @@ static int read_property(ply *p, const char *type_name, const char *name, ted4_m
         return ted4_say(m, "%s:%zu: more than %d vertex properties", p->path, p->line,
                         MAX_PROPERTIES);
     for (int i = 0; i < N_WANTED; i++)
-        if (strcmp(name, wanted[i]) == 0)
-            p->index[i] = (int)p->n_properties;
+        for (int k = 0; k < 3 && wanted[i][k] != NULL; k++)
+            if (strcmp(name, wanted[i][k]) == 0)
+                p->index[i] = (int)p->n_properties;
     p->type[p->n_properties] = (ply_type)type;
     p->offset[p->n_properties++] = p->stride;
     p->stride += types[type].size;
@@ -197,18 +205,21 @@ static uint8_t colour_byte(double v)
     return (uint8_t)(v > 0 ? (v < 255 ? v + 0.5 : 255) : 0);
 }
 
-/* Returns the factor that brings colours to 0..255. Float colours have no stated range: it is taken
- * as 0..1 unless a value exceeds 1. Reads all vertices in advance and restores the position. */
+/* Returns the factor that brings colours to 0..255. No file states their range. Float colours are
+ * taken as 0..1 unless a value exceeds 1, and integers of more than 8 bits as 0..255 unless a value
+ * exceeds 255: then as 0..65535. Reads all vertices in advance and restores the position. */
 static double colour_scale(ply *p)
 {
     const size_t start = p->at;
     double v[N_WANTED] = { 0 }, high = 0;
 
-    if (p->index[RED] < 0 || p->type[p->index[RED]] < F32)
+    if (p->index[RED] < 0 || p->type[p->index[RED]] <= U8)
         return 1;
     for (uint64_t i = 0; i < p->count && read_vertex(p, v) == 0; i++)
         high = fmax(high, fmax(v[RED], fmax(v[GREEN], v[BLUE])));
     p->at = start;
+    if (p->type[p->index[RED]] < F32)
+        return high > 255 ? 255.0 / 65535 : 1;
     return high <= 1 ? 255 : 1;
 }
 

@@ -20,9 +20,9 @@ int ted4_point_cloud_alloc(ted4_point_cloud *c, size_t n);
 void ted4_point_cloud_free(ted4_point_cloud *c);
 
 /* Reads an ASCII or binary little-endian PLY file whose first element is "vertex" with x y z of any
- * type. red green blue of an integer type are 0..255; of a float type they are 0..1, or 0..255 if
- * any exceeds 1. Points without colours are grey. Other properties are skipped. Returns 0, or -1
- * with *m filled. */
+ * type. red green blue (or diffuse_red and so on, or r g b) of an integer type are 0..255, or
+ * 0..65535 if any exceeds 255; of a float type they are 0..1, or 0..255 if any exceeds 1. Points
+ * without colours are grey. Other properties are skipped. Returns 0, or -1 with *m filled. */
 int ted4_ply_read(ted4_point_cloud *c, const char *path, ted4_message *m);
 
 /* Reads the first file in folder that has one of the usual names (see point_cloud.c). Returns 0,

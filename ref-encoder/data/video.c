@@ -1,6 +1,7 @@
 /* video.c - see video.h. Frames are unpacked into a folder with a unique name, which gets its final
  * name when it is complete. So a folder with the final name always holds every frame, and programs
- * that unpack the same video at the same time do not disturb one another.
+ * that unpack the same video at the same time do not disturb one another. What a killed program has
+ * left is removed when the next video is unpacked.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "data/video.h"
 
@@ -8,15 +9,20 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#ifdef __linux__
+#include <sys/prctl.h>
+#endif
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 #include <xxhash.h>
 #include "data/data_util.h"
 #include "data/raw_scene.h"
+#include "data/video_folder.h"
 #include "data/video_kind.h"
 
 #define COUNT   "count"     /* file with the number of frames, in a complete folder */
@@ -31,22 +37,6 @@ enum { TELL_EVERY = 1000 }; /* interval of progress reports, in milliseconds */
     "settb=AVTB,setpts=N*40000,scale=flags=bitexact+accurate_rnd+full_chroma_int+full_chroma_inp," \
     "format=rgb24,setparams=color_primaries=unknown:color_trc=unknown"
 #define RATE "25" /* 1 / 40000 us, as in setpts */
-
-/* Removes a folder that holds only files. */
-static void remove_folder(const char *folder)
-{
-    DIR *d = opendir(folder);
-
-    for (struct dirent *e = d == NULL ? NULL : readdir(d); e != NULL; e = readdir(d)) {
-        char *path = ted4_path_join(folder, e->d_name);
-        if (path != NULL && ted4_is_file(path))
-            unlink(path);
-        free(path);
-    }
-    if (d != NULL)
-        closedir(d);
-    rmdir(folder);
-}
 
 /* Returns the folder of all unpacked videos, which is created if necessary. A folder of another
  * user is refused, because its files would be used as pictures. Owned by the caller. Returns NULL
@@ -98,17 +88,19 @@ static char *final_folder(const char *cache, const char *path, const struct stat
     return ted4_path_join(cache, name);
 }
 
-/* Counts the pictures in a folder, from 1 on without a gap. */
+/* Counts the pictures in a folder, from 1 on without a gap. One without bytes is none: a crash of
+ * the machine may leave the name of a file without its contents. */
 static size_t count_frames(const char *folder)
 {
     char name[32];
+    struct stat s;
     size_t n = 0;
     int found = 1;
 
     while (found) {
         snprintf(name, sizeof name, "%06zu.png", n + 1);
         char *path = ted4_path_join(folder, name);
-        found = path != NULL && ted4_is_file(path);
+        found = path != NULL && stat(path, &s) == 0 && S_ISREG(s.st_mode) && s.st_size > 0;
         n += found != 0;
         free(path);
     }
@@ -148,6 +140,18 @@ typedef struct {
     const ted4_dataset_options *o;
     const char *video, *demuxer, *folder;
 } unpacking;
+
+/* Makes this process, a child, end with its parent, whatever ends that: ffmpeg would go on to fill
+ * the disk. Only Linux can do this. */
+static void end_with(pid_t parent)
+{
+#ifdef __linux__
+    if (prctl(PR_SET_PDEATHSIG, SIGKILL) != 0 || getppid() != parent)
+        _exit(NO_EXEC);
+#else
+    (void)parent;
+#endif
+}
 
 /* Runs in the child process: works in the folder, writes errors to messages, and never returns. */
 static void become_ffmpeg(const unpacking *a, const char *input, const char *limit, int messages)
@@ -204,9 +208,11 @@ static int run_ffmpeg(const unpacking *a, size_t most, char tail[TAIL])
     snprintf(limit, sizeof limit, "%zu", most);
     if (snprintf(input, sizeof input, "file:%s", a->video) >= (int)sizeof input || pipe(ends) != 0)
         return -1;
-    const pid_t child = fork();
-    if (child == 0)
+    const pid_t parent = getpid(), child = fork();
+    if (child == 0) {
+        end_with(parent);
         become_ffmpeg(a, input, limit, ends[1]);
+    }
     close(ends[1]);
     if (child > 0)
         read_messages(ends[0], a, tail);
@@ -253,6 +259,11 @@ static int fill(const unpacking *a, size_t most, ted4_message *m)
     if (status != 0 || n == 0)
         return ted4_say(m, "%s: ffmpeg, unpacking into %s, failed after %zu frames%s", video,
                         folder, n, words);
+    if (words[0] != 0) /* what it cannot decode it leaves out, or makes up, and goes on */
+        return ted4_say(m,
+                        "%s: ffmpeg gives %zu frames, but some may be missing or wrong%s (if not, "
+                        "convert the video with ffmpeg and use the result)",
+                        video, n, words);
     return write_count(folder, n) == 0 ? 0 : ted4_say(m, "%s: %s", folder, strerror(errno));
 }
 
@@ -262,7 +273,7 @@ static int settle(const char *folder, const char *final, ted4_message *m)
 {
     if (rename(folder, final) == 0 || is_complete(final))
         return 0;
-    remove_folder(final);
+    ted4_video_folder_remove(final);
     if (rename(folder, final) == 0)
         return 0;
 
@@ -274,28 +285,19 @@ static int settle(const char *folder, const char *final, ted4_message *m)
 /* Unpacks into a new folder beside the final one, and renames it. */
 static int unpack(const unpacking *a, size_t most, const char *final, ted4_message *m)
 {
-    const size_t size = strlen(final) + 8;
-    char *folder = malloc(size);
-
-    if (folder == NULL)
-        return ted4_say_no_memory(m);
-    snprintf(folder, size, "%s.XXXXXX", final);
-    if (mkdtemp(folder) == NULL) {
-        ted4_say(m, "%s: %s", folder, strerror(errno));
-        free(folder);
-        return -1;
-    }
     unpacking with_folder = *a;
+    ted4_video_folder v;
 
-    with_folder.folder = folder;
+    if (ted4_video_folder_make(&v, final, m) != 0)
+        return -1;
+    with_folder.folder = v.path;
 
     int result = fill(&with_folder, most, m);
     if (result == 0)
-        result = settle(folder, final, m);
+        result = settle(v.path, final, m);
     /* The folder does not exist any more if it was renamed. It does if this failed or another
      * program was first. */
-    remove_folder(folder);
-    free(folder);
+    ted4_video_folder_leave(&v);
     return result;
 }
 
@@ -321,6 +323,7 @@ char *ted4_video_unpack(const char *video, size_t most, const ted4_dataset_optio
     else if (cache != NULL && (final = final_folder(cache, path, &s, limit)) == NULL)
         ted4_say_no_memory(m);
     if (final != NULL && !is_complete(final)) {
+        ted4_video_folder_sweep(cache);
         a.demuxer = ted4_video_demuxer(path, m);
         if (a.demuxer == NULL || unpack(&a, limit, final, m) != 0) {
             free(final);

@@ -3,11 +3,9 @@
  * and clips in any folder.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "test.h"
-#include "data/video.h"
 #include "data/video_kind.h"
 #include "refuse.h"
 #include "tiny_scene.h"
@@ -152,6 +150,7 @@ static void test_rows(void **state)
     assert_int_equal(warned(&f, "1 of 5 entries has no picture: ", "row 2: no clip of number 2"),
                      8);
     ted4_dataset d = load(&f, &tiny_options);
+    assert_true(d.rate == 0); /* no file of this layout has one */
     for (size_t i = 0; i < d.n_pictures; i++)
         assert_int_equal(row_of(&d, i), atoi(strstr(d.pictures[i].path, "/cam") + 4));
     ted4_dataset_free(&d);
@@ -307,75 +306,6 @@ static void test_disguised_playlists(void **state)
     tiny_free(&f);
 }
 
-/* Puts a program in place of ffmpeg, which works in the folder of the frames. */
-static void fake_ffmpeg(const tiny_folder *f, const char *commands)
-{
-    tiny_string s = { "", 0 };
-
-    tiny_add(&s, "#!/bin/sh\n%s\n", commands);
-    tiny_text(f, "bin/ffmpeg", s.text);
-    must(chmod(tiny_path(f, "bin/ffmpeg"), 0700) == 0, "chmod");
-}
-
-/* Returns whether folder/name is there. */
-static int has(const char *folder, const char *name)
-{
-    char path[1400];
-
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    return access(path, F_OK) == 0;
-}
-
-/* Unpacks f/a.gif, and returns whether that went well. folder: that of the frames, or as before. */
-static int unpacked(const tiny_folder *f, char folder[1200])
-{
-    ted4_message m;
-    char *const at = ted4_video_unpack(tiny_path(f, "a.gif"), 0, NULL, &m);
-
-    if (at != NULL)
-        snprintf(folder, 1200, "%s", at);
-    free(at);
-    return at != NULL;
-}
-
-/* A folder that lacks a frame stays until all frames of another can take its place; and one that
- * another program has completed in the meantime stays as it is. */
-static void test_unpacked_twice(void **state)
-{
-    static const char good[] = ": >000001.png; : >000002.png";
-    static const char other[] =
-        "to=${PWD%.*}; rm -r \"$to\"; mkdir \"$to\"; cd \"$to\"\n"
-        ": >000001.png; : >theirs; echo 1 >count; : >\"$OLDPWD/000001.png\"";
-    tiny_folder f = tiny_new();
-    char folder[1200], path[1400];
-    char *const programs = strdup(getenv("PATH"));
-
-    (void)state;
-    snprintf(path, sizeof path, "%s:%s", tiny_path(&f, "bin"), programs);
-    setenv("PATH", path, 1);
-    setenv("XDG_CACHE_HOME", tiny_path(&f, "cache"), 1);
-    tiny_text(&f, "a.gif", "GIF89a");
-    fake_ffmpeg(&f, good);
-    assert_true(unpacked(&f, folder));
-    snprintf(path, sizeof path, "%s/000001.png", folder);
-    must(remove(path) == 0, path);
-    fake_ffmpeg(&f, "echo broken >&2; exit 1");
-    assert_false(unpacked(&f, folder));
-    assert_true(has(folder, "000002.png"));
-    fake_ffmpeg(&f, good);
-    assert_true(unpacked(&f, folder));
-    assert_true(has(folder, "000001.png"));
-    must(remove(path) == 0, path);
-    fake_ffmpeg(&f, other);
-    assert_true(unpacked(&f, folder));
-    assert_true(has(folder, "theirs"));
-    assert_false(has(folder, "000002.png"));
-    setenv("PATH", programs, 1);
-    unsetenv("XDG_CACHE_HOME");
-    free(programs);
-    tiny_free(&f);
-}
-
 /* The example of doc/layouts.md loads, with clips of 300 frames. */
 static void test_example(void **state)
 {
@@ -408,11 +338,10 @@ static void test_example(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_stills),         cmocka_unit_test(test_copies),
-        cmocka_unit_test(test_rows),           cmocka_unit_test(test_starts),
-        cmocka_unit_test(test_playlists),      cmocka_unit_test(test_disguised_playlists),
-        cmocka_unit_test(test_example),        cmocka_unit_test(test_bright_video),
-        cmocka_unit_test(test_unpacked_twice),
+        cmocka_unit_test(test_stills),    cmocka_unit_test(test_copies),
+        cmocka_unit_test(test_rows),      cmocka_unit_test(test_starts),
+        cmocka_unit_test(test_playlists), cmocka_unit_test(test_disguised_playlists),
+        cmocka_unit_test(test_example),   cmocka_unit_test(test_bright_video),
     };
 
     return cmocka_run_group_tests_name("clips", tests, NULL, NULL);

@@ -399,6 +399,39 @@ static void test_ply(void **state)
     tiny_free(&f);
 }
 
+/* Colours by type and name: 16 bits per channel, or 8 bits in a wider type. */
+static void test_ply_colours(void **state)
+{
+    static const struct {
+        const char *type, *prefix, *values;
+        uint8_t rgb[3];
+    } cases[] = {
+        { "ushort", "", "12850 5140 65535\n1 2 3 0 0 0", { 50, 20, 255 } },
+        { "ushort", "", "50 20 255\n1 2 3 0 0 0", { 50, 20, 255 } },
+        { "int", "", "0 0 0\n1 2 3 65535 257 0", { 0, 0, 0 } },
+        { "uchar", "diffuse_", "10 20 30\n1 2 3 0 0 0", { 10, 20, 30 } },
+    };
+    ted4_point_cloud c = { NULL, NULL, 0 };
+    ted4_message m;
+    tiny_folder f = tiny_new();
+
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        const char *const type = cases[i].type, *const prefix = cases[i].prefix;
+        tiny_string s = { "", 0 };
+        tiny_add(&s,
+                 "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\n"
+                 "property float z\nproperty %s %sred\nproperty %s %sgreen\nproperty %s %sblue\n"
+                 "end_header\n1 2 3 %s\n",
+                 type, prefix, type, prefix, type, prefix, cases[i].values);
+        tiny_text(&f, "points3d.ply", s.text);
+        assert_int_equal(ted4_ply_find(&c, f.path, &m), 0);
+        assert_memory_equal(c.rgb, cases[i].rgb, 3);
+        ted4_point_cloud_free(&c);
+    }
+    tiny_free(&f);
+}
+
 /* Without a point cloud: random points in a box around what the cameras look at. Four cameras on a
  * circle of radius 10 look at (0, 0, 3). */
 static void test_random_points(void **state)
@@ -496,6 +529,27 @@ static void test_times(void **state)
     assert_int_equal(frame[1], 0);
 }
 
+/* One of 1501 times is missing, near either end, or in the middle. */
+static void test_long_times(void **state)
+{
+    enum { N = 1500 };
+    static const uint32_t missing[] = { 1, 101, 750, 1499 };
+    static double t[N];
+    static uint32_t frame[N];
+
+    (void)state;
+    for (size_t k = 0; k < sizeof missing / sizeof missing[0]; k++) {
+        ted4_message m;
+        uint32_t n;
+        for (uint32_t i = 0; i < N; i++)
+            t[i] = (i + (i >= missing[k])) / 30.0;
+        assert_int_equal(ted4_frame_times(t, N, frame, &n, &m), 0);
+        assert_int_equal(n, N + 1);
+        for (uint32_t i = 0; i < N; i++)
+            assert_int_equal(frame[i], i + (i >= missing[k]));
+    }
+}
+
 static void test_print(void **state)
 {
     (void)state;
@@ -538,6 +592,7 @@ int main(void)
         cmocka_unit_test(test_nerfstudio),   cmocka_unit_test(test_downscale),
         cmocka_unit_test(test_ply),          cmocka_unit_test(test_random_points),
         cmocka_unit_test(test_times),        cmocka_unit_test(test_print),
+        cmocka_unit_test(test_long_times),   cmocka_unit_test(test_ply_colours),
     };
 
     return cmocka_run_group_tests_name("dataset", tests, NULL, NULL);
