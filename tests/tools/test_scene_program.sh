@@ -53,6 +53,19 @@ for layout in blender nerfstudio colmap colmap-text hypernerf calibration llff; 
     done
 done
 
+# A video of which only the beginning was written is none, whatever the status of ffmpeg.
+mkdir "$out/bin"
+cat >"$out/bin/ffmpeg" <<'END'
+#!/bin/sh
+for last; do :; done
+printf '\000\000\000\010ftyp' >"$last"
+END
+chmod +x "$out/bin/ffmpeg"
+expect half_video 3 'cam02.mp4: the program ffmpeg cannot make it' env PATH="$out/bin:$PATH" \
+    "$TED4_BUILD/ted4scene" still -o "$out/half" --size 16x16 --layout neu3d --video
+if [ -z "$(find "$out/half" -name '*.mp4*' -o -name '*.part')" ]; then ok half_video_left
+else fail half_video_left "a file of ffmpeg stayed"; fi
+
 # A run is stopped as soon as its first picture has a name.
 for kind in "--background room --jpeg baseline" "--background transparent --png 16" \
     "--background room"; do

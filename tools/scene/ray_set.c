@@ -16,6 +16,7 @@
 #include <unistd.h>
 
 #include "tool/leftovers.h"
+#include "tool/mp4_whole.h"
 
 enum { MAX_PATH = 1024 };
 static const char truth_name[] = "truth.json";
@@ -233,8 +234,8 @@ static int run_ffmpeg(const char *input, const char *to)
     int status = -1;
 
     if (child == 0) {
-        execlp("ffmpeg", "ffmpeg", "-nostdin", "-v", "error", "-y", "-framerate", "30", "-i", input,
-               "-c:v", "png", "-f", "mp4", to, (char *)NULL);
+        execlp("ffmpeg", "ffmpeg", "-nostdin", "-v", "error", "-xerror", "-y", "-framerate", "30",
+               "-i", input, "-c:v", "png", "-f", "mp4", to, (char *)NULL);
         _exit(127);
     }
     if (child < 0)
@@ -242,7 +243,7 @@ static int run_ffmpeg(const char *input, const char *to)
     ted4_leftovers_add(to, child);
     while (waitpid(child, &status, 0) < 0 && errno == EINTR)
         ;
-    return WIFEXITED(status) && WEXITSTATUS(status) == 0 ? 0 : -1;
+    return WIFEXITED(status) && WEXITSTATUS(status) == 0 && ted4_mp4_is_whole(to) ? 0 : -1;
 }
 
 static int encode(const char *folder, const char *camera, ted4_ray_message *m)
