@@ -1,6 +1,7 @@
 /* ted4.h - the public interface of libted4dec, which decodes a TED4 file and reconstructs its
  * Gaussians at any time. "spec" is the TED4 Bitstream Specification. The library prints nothing,
- * starts no thread and keeps no global state. This header depends on base/parallel.h and
+ * starts no thread and keeps no global state. It reads the environment variable TED4_KERNEL; no
+ * thread may change the environment during a call. This header depends on base/parallel.h and
  * base/status.h only.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_H
@@ -21,7 +22,8 @@ extern "C" {
 
 /* The source of all memory; if alloc is NULL, malloc and free are used. alloc(user, size) returns
  * size bytes aligned for any type, or NULL if memory ran out. free(user, block) releases such a
- * block. */
+ * block. A scene or ted4_recon keeps a copy and uses it until it is freed, so user must live as
+ * long. Both functions are called by the thread that calls the library. */
 typedef struct {
     void *(*alloc)(void *user, size_t size);
     void (*free)(void *user, void *block);
@@ -32,7 +34,7 @@ typedef struct {
 typedef struct {
     ted4_allocator allocator;
     /* The caller's threads, borrowed for the duration of the call. NULL: the calling thread does
-     * all the work. */
+     * all the work. Each needs up to 256 KiB of stack. */
     const ted4_parallel *parallel;
     /* The largest amount of memory, in bytes, that the scene or the ted4_recon may occupy,
      * including what is needed to make it. 0: 4 GiB. Beyond it, the verdict is limit.memory. */
@@ -42,7 +44,9 @@ typedef struct {
     uint64_t max_work;
     /* Called for every syntax element, in file order and on the calling thread, with the element's
      * byte offset in the file, its name, its index if it is part of an array (otherwise 0), and its
-     * value. NULL: no trace. */
+     * value. The symbols of a substream all have its offset, and so has the substream itself, whose
+     * value is their number. A zlib stream is one element, whose index is -1 and whose value is its
+     * number of bytes. NULL: no trace. */
     void (*trace)(void *user, size_t offset, const char *element, int64_t index, int64_t value);
     void *trace_user; /* the first argument of trace */
 } ted4_options;
@@ -137,8 +141,8 @@ typedef void ted4_sink(void *user, const void *bytes, size_t size);
  * NULL; the trace of o is not called. */
 ted4_status ted4_dump_syntax(const void *data, size_t size, const ted4_options *o, ted4_sink *sink,
                              void *user, ted4_error *e);
-/* Writes one of the tiers T1 to T4 (tier = 1 .. 4) of a decoded scene to the sink. Returns TED4_OK
- * or TED4_E_LIMIT_MEMORY. o may be NULL; its max_work is not used. */
+/* Writes one of the tiers T1 to T4 (tier = 1 .. 4; nothing for other numbers) of a decoded scene to
+ * the sink. Returns TED4_OK or TED4_E_LIMIT_MEMORY. o may be NULL; its max_work is not used. */
 ted4_status ted4_dump_tier(const ted4_scene *s, int tier, const ted4_options *o, ted4_sink *sink,
                            void *user);
 
