@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-2-Clause
 import {
   AppBase, AppOptions, CameraComponentSystem, Color, createGraphicsDevice, DEVICETYPE_WEBGL2,
-  Entity, FILLMODE_NONE, GSplatComponentSystem, GSPLATDATA_LARGE, Mat4, Quat, RESOLUTION_FIXED,
-  TONEMAP_NONE, WORKBUFFER_UPDATE_ONCE,
+  Entity, FILLMODE_NONE, GSplatComponentSystem, GSPLATDATA_LARGE, Mat4, Quat, TONEMAP_NONE,
+  WORKBUFFER_UPDATE_ONCE,
 } from "playcanvas";
 import { drawAsAnnexI, setPixel } from "../adapters/playcanvas-kernel.js";
 import { createContainer, updateContainer } from "../adapters/playcanvas.js";
@@ -151,7 +151,8 @@ export class View {
   }
 
   resize(width, height) {
-    this.#app.setCanvasResolution(RESOLUTION_FIXED, width, height);
+    // setCanvasResolution would multiply by devicePixelRatio where that is less than 1.
+    this.#app.graphicsDevice.setResolution(width, height);
     this.#change();
   }
 

@@ -6,7 +6,7 @@ import { basename, dirname } from "node:path";
 import { after, before, test } from "node:test";
 import { Browser } from "./browser.mjs";
 import { add, centreOf, dot, fitted, forward, scaled } from "../page/camera.js";
-import { PLAYER, SCENE } from "./fixture.mjs";
+import { keep, PLAYER, SCENE } from "./fixture.mjs";
 import { psnr } from "./pictures.mjs";
 import { serve } from "./server.mjs";
 
@@ -60,6 +60,22 @@ test("the pivot stays under the pointer that moves the camera sideways", async (
   }
   await page.resize(WIDTH, HEIGHT);
   await page.evaluate(`document.body.classList.remove("bare"); 0`);
+});
+
+test("the canvas has the pixels of the screen, also on a page that is shown smaller", async () => {
+  const small = await browser.page(WIDTH, HEIGHT);
+  await small.resize(400, 300, 0.5);
+  await small.open(`${server.origin}/?file=${basename(SCENE)}`);
+  await small.until("globalThis.ted4Player?.isSettled");
+  for (const ratio of [0.5, 0.8, 1, 2, 0.5]) {
+    await small.resize(400, 300, ratio);
+    await small.until(`Math.abs(devicePixelRatio - ${ratio}) < 1e-6 && (({ width, clientWidth }) =>
+      width === Math.round(clientWidth * ${ratio}))(document.getElementById("picture"))`, 10);
+    await small.until("ted4Player.isSettled");
+    keep(`ratio-${ratio}.png`, await small.screenshot());
+  }
+  assert.deepEqual(small.errors, []);
+  await small.close();
 });
 
 test("the pivot is measured anew at every camera of the file", async () => {
