@@ -108,7 +108,7 @@ export class Player {
     this.clock.reset(scene.info.frames, scene.info.rate);
     this.#view.clear();
     this.#view.setBackground(scene.info.background);
-    Object.assign(this.navigation, { up, ...start });
+    Object.assign(this.navigation, { up, distance: 2 ** scene.info.exponent, ...start });
     if (start === null) this.useCamera(0, timeOfFragment(fragment, scene.info));
     else this.seekFragment(fragment);
   }
@@ -143,7 +143,15 @@ export class Player {
   // that are on the screen, but they may be the same.
   #place(camera) {
     this.navigation.camera = this.#unmeasured = camera;
-    if (this.#gaussians !== null) this.navigation.distance = depthAhead(camera, this.#gaussians);
+    if (this.#gaussians !== null) this.#measure(this.#gaussians);
+  }
+
+  // Whether Gaussians have told how far ahead the pivot of a camera is. Those that do not show tell
+  // nothing.
+  #measure(g) {
+    const depth = depthAhead(this.#unmeasured, g);
+    if (depth !== undefined) this.navigation.distance = depth;
+    return depth !== undefined;
   }
 
   // Whether the camera is the one that the file's path has at the time that is shown. It ends when
@@ -224,11 +232,12 @@ export class Player {
       if (!this.#isNext(number)) return;
       this.#show(g, key);
       this.#failed(null);
-    }).catch((error) => {
-      if (!this.#isNext(number)) return;
+    }, (error) => {
+      // Those under way may go well: another worker may have memory that this one lacks.
+      if (!this.#pending.delete(number)) return;
       this.#shown = key; // and is not tried again
       this.#failed(error);
-    }).finally(() => this.#evaluate());
+    }).catch((error) => this.#failed(error)).finally(() => this.#evaluate());
   }
 
   // Whether an evaluation that has ended is to be shown: not when a later one, or another file,
@@ -240,9 +249,8 @@ export class Player {
   }
 
   #show(g, key) {
-    if (this.#unmeasured !== null && this.#unmeasured === this.navigation.camera)
-      this.navigation.distance = depthAhead(this.#unmeasured, g);
-    this.#unmeasured = null;
+    const isWaiting = this.#unmeasured === this.navigation.camera;
+    if (!isWaiting || this.#measure(g)) this.#unmeasured = null;
     this.#gaussians = g;
     this.#shown = key;
     this.statistics.evaluate = g.milliseconds;

@@ -56,11 +56,11 @@ export function startCamera(g, up, info) {
   return { camera: lookingAt(lens, centre, target, up), distance };
 }
 
-// How far ahead of a camera the scene is: the median depth of what lies before it.
+// How far ahead of a camera the scene is: the median depth of what shows before it; undefined where
+// nothing does.
 export function depthAhead({ R, t }, g) {
-  const indices = samples(g);
-  const depths = (indices.length > 0 ? indices : [0])
+  const depths = samples(g)
     .map((i) => R[6] * g.mean[0][i] + R[7] * g.mean[1][i] + R[8] * g.mean[2][i] + t[2])
     .filter((z) => z > 0);
-  return depths.length > 0 ? middle(depths).centre : 1;
+  return depths.length > 0 ? middle(depths).centre : undefined;
 }

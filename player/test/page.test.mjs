@@ -7,7 +7,7 @@ import { bytesByType, camerasOf, chunksOf, metaOf } from "../page/chunks.js";
 import { Clock } from "../page/clock.js";
 import { Evaluators } from "../page/evaluators.js";
 import { cameraOnPath, placeOnPath } from "../page/path.js";
-import { startCamera } from "../page/start.js";
+import { depthAhead, startCamera } from "../page/start.js";
 
 const IDENTITY = [1, 0, 0, 0, 1, 0, 0, 0, 1];
 
@@ -237,6 +237,7 @@ test("where nothing shows at the first time, a viewer begins before the whole sc
     const centre = centreOf(camera);
     near([Math.hypot(...centre.map((v, i) => v - info.origin[i]))], [distance]);
     near(forward(camera), info.origin.map((v, i) => (v - centre[i]) / distance));
+    assert.equal(depthAhead({ R: IDENTITY, t: [0, 0, 0] }, g), undefined);
   }
   // What shows is at one place, which does not say how far to go back.
   const alone = { n: 3, opacity: [0, 1, 0], mean: [[5, 6, 7], [5, 6, 7], [5, 6, 7]] };
