@@ -2,10 +2,16 @@
 // META, and the cameras of CAMS.
 // SPDX-License-Identifier: BSD-2-Clause
 
+const MAGIC = [0x89, 0x54, 0x45, 0x44, 0x34, 0x0d, 0x0a, 0x1a];
 const HEADER = 12, FRAME = 20; // bytes of the file header; of a chunk without its payload
 const CAMS_HEAD = 20, CAMERA = 80, MAX_CAMERAS = 65536, MAX_SIDE = 16384;
 const DEN_END = 2 ** 24; // R-REC-002
 const TOLERANCE = 0.001;
+
+// Whether the first bytes of a file are those of a TED4 file (spec 5.1).
+export function isTed4(bytes) {
+  return MAGIC.every((v, i) => bytes[i] === v);
+}
 
 // [{ type, payload }] in the order of the file.
 export function chunksOf(bytes) {

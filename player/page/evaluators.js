@@ -81,7 +81,7 @@ export class Evaluators {
   // Elements of the file and their bytes. Slow: the file is decoded again.
   async bytesByElement() {
     const scene = await this.#clients[0].open(this.#bytes, { budget: true });
-    scene.close();
+    scene.close().catch(() => {});
     return scene.bytesByElement;
   }
 }

@@ -4,13 +4,17 @@
 import workerText from "worker-text";
 import { Ted4Error } from "../src/decoder.js";
 import { bindCameraBox } from "./camera_box.js";
+import { isTed4 } from "./chunks.js";
 import { bindKeys } from "./keys.js";
 import { bindMessage, clearMessage, showMessage } from "./message.js";
 import { showElements, showFile, showStatistics } from "./panel.js";
 import { Player } from "./player.js";
 import { bindTimeline } from "./timeline.js";
 
+const HEAD = 64; // bytes of a file that are enough to refuse it
 const WIDE = 640; // pixels in which there is room for the panel beside the scene
+const LOST = "The browser has taken the drawing context away, and may give it back. " +
+  "If it does not, reload the page.";
 const at = (id) => document.getElementById(id);
 // A page that holds everything (export.mjs) leaves { wasm, scene, name } here.
 const embedded = globalThis.ted4Embedded ?? {};
@@ -33,6 +37,10 @@ const player = new Player(at("picture"), workers, wasm, (error) => {
   if (error === null) clearMessage("time");
   else showMessage(explain(player.file.name, error), "time");
 });
+player.lost = (isLost) => {
+  if (isLost) showMessage(LOST, "context");
+  else clearMessage("context");
+};
 
 function showPanel(isShown) {
   at("panel").hidden = !isShown;
@@ -72,12 +80,23 @@ async function read(address) {
 }
 
 async function showSizes() {
-  if (player.file !== null && at("sizes").open) showElements(await player.bytesByElement());
+  if (player.file === null || !at("sizes").open) return;
+  try {
+    showElements(await player.bytesByElement());
+  } catch (error) {
+    showMessage(`Bytes by element: ${error.message}`, "file");
+  }
+}
+
+// The bytes of a chosen file; of one that is no TED4 file, however large, only the first ones.
+async function bytesOf(file) {
+  const head = await file.slice(0, HEAD).arrayBuffer();
+  return isTed4(new Uint8Array(head)) ? file.arrayBuffer() : head;
 }
 
 function bindFiles() {
   const openFile = (file) => {
-    if (file) open(file.name, file.arrayBuffer(), performance.now());
+    if (file) open(file.name, bytesOf(file), performance.now());
   };
   at("file").addEventListener("change", () => {
     openFile(at("file").files[0]);
@@ -130,6 +149,7 @@ bindFiles();
 bindMessage();
 bindView();
 countPictures();
+at("welcome").hidden = false; // from now on files are heard of
 
 function frame() {
   timeline.show();

@@ -3,7 +3,8 @@
 
 const at = (id) => document.getElementById(id);
 
-// about: "file", one that was asked for, or "time", one of the scene that is shown.
+// about: "file", one that was asked for, "time", one of the scene that is shown, or "context", in
+// which it is drawn.
 export function showMessage(text, about) {
   at("message").dataset.about = about;
   at("message").hidden = false;

@@ -13,11 +13,13 @@ import { depthAhead, startCamera } from "./start.js";
 import { View } from "./view.js";
 
 const NEAREST = 0.02; // in units of the scene (I.2)
+const LONGEST = 0.25; // seconds of flight between two frames
 const UP = [0, -1, 0]; // where a file does not say
 
 export class Player {
   clock = new Clock();
   navigation;
+  lost = () => {}; // hears true when the drawing context is lost, and false when it is back
   file = null; // of the open file: { name, bytes, info, chunks, meta, cameras, milliseconds }
   // Milliseconds of the last evaluation, and until the first picture; counts from the beginning.
   statistics = { evaluate: 0, firstPicture: 0, evaluated: 0, drawn: 0 };
@@ -59,6 +61,7 @@ export class Player {
       throw error;
     }
     this.#view.onFrame((now) => this.#tick(now), () => { this.statistics.drawn++; });
+    this.#view.onLoss((isLost) => this.lost(isLost));
   }
 
   // Shows a file from its start, or from the time that the fragment of its address says once the
@@ -187,7 +190,7 @@ export class Player {
   // Before every frame of the display.
   #tick(now) {
     this.clock.advance(now);
-    this.navigation.fly((now - this.#last) / 1000);
+    this.navigation.fly(Math.min(LONGEST, (now - this.#last) / 1000));
     this.#last = now;
     this.#followPath();
     this.#evaluate();

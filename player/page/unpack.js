@@ -15,4 +15,9 @@
   const script = document.createElement("script");
   script.textContent = new TextDecoder().decode(code);
   document.body.append(script);
-})();
+})().catch(({ message }) => {
+  const at = (id) => document.getElementById(id);
+  at("message").hidden = false;
+  at("close-message").hidden = true; // nothing hears it
+  at("message-text").textContent = `This page cannot start in this browser: ${message}`;
+});

@@ -99,6 +99,13 @@ export class View {
     this.#app.on("postrender", drawn);
   }
 
+  // lost(true) is called when the drawing context is lost, lost(false) when it is back.
+  onLoss(lost) {
+    const { graphicsDevice } = this.#app;
+    graphicsDevice.on("devicelost", () => lost(true));
+    graphicsDevice.on("devicerestored", () => lost(false));
+  }
+
   // Nothing is shown until the next Gaussians.
   clear() {
     this.#entity?.destroy();

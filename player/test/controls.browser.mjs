@@ -171,16 +171,20 @@ test("the timeline leaves the panel free in windows of all sizes", async () => {
   await page.resize(WIDTH, HEIGHT);
 });
 
-test("a drawing context that is lost and restored shows the same picture", async () => {
+test("a drawing context that is lost is told of, and restored shows the same picture", async () => {
   await page.evaluate(`document.body.classList.add("bare"); 0`);
   await page.until("ted4Player.isSettled");
   const wanted = await page.screenshot();
   await page.evaluate(`globalThis.loss = document.getElementById("picture").getContext("webgl2")
     .getExtension("WEBGL_lose_context"); loss.loseContext(); 0`);
   await frames();
+  const message = `document.getElementById("message")`;
+  assert.equal(await page.evaluate(`${message}.hidden`), false);
+  assert.match(await page.evaluate(`${message}.textContent`), /drawing context/);
   const drawn = await page.evaluate("ted4Player.statistics.drawn");
   await page.evaluate("loss.restoreContext(); 0");
   await page.until(`ted4Player.statistics.drawn > ${drawn} + 1 && ted4Player.isSettled`, 10);
+  assert.equal(await page.evaluate(`${message}.hidden`), true);
   assert.ok(await psnr(page, await page.screenshot(), wanted) >= 60);
   await page.evaluate(`document.body.classList.remove("bare"); 0`);
 });

@@ -12,6 +12,7 @@ import { serve } from "./server.mjs";
 const NAME = basename(SCENE), NEXT = join(OUT, "next.ted4"), BAD = join(OUT, "bad.ted4");
 const LATE = encodeURIComponent(`${NAME}?wait=1500`);
 const MESSAGE = `document.getElementById("message")`;
+const WELCOME = `document.getElementById("welcome")`;
 let browser, server;
 
 before(async () => {
@@ -32,7 +33,7 @@ async function opened(query = "") {
   await page.open(`${server.origin}/${query}`);
   await page.evaluate(`globalThis.drop = (name, address) => {
     const arrayBuffer = () => fetch(address).then((response) => response.arrayBuffer());
-    const dataTransfer = { files: [{ name, arrayBuffer }] };
+    const file = { name, arrayBuffer, slice: () => file }, dataTransfer = { files: [file] };
     dispatchEvent(Object.assign(new Event("drop"), { dataTransfer }));
   }; 0`);
   return page;
@@ -76,6 +77,7 @@ test("a file is chosen by keys, also the same one again, and while another one i
       await page.press("Enter");
     };
     await page.until("globalThis.ted4Player");
+    assert.equal(await page.evaluate(`${WELCOME}.checkVisibility()`), true);
     await page.choose(BAD, press("file"));
     await page.until(`!${MESSAGE}.hidden`);
     await page.evaluate(`${MESSAGE}.hidden = true; 0`);
@@ -87,6 +89,43 @@ test("a file is chosen by keys, also the same one again, and while another one i
     await page.until(isShown("next.ted4"));
     await page.close();
   });
+
+test("a file that is no scene is refused by its first bytes; its rest is not read", async () => {
+  const page = await opened();
+  await page.until("globalThis.ted4Player");
+  await page.evaluate(`globalThis.reads = 0; (() => {
+    const file = new File([new Uint8Array(1e6)], "video");
+    file.arrayBuffer = () => {
+      reads++;
+      return new Blob([file]).arrayBuffer();
+    };
+    dispatchEvent(Object.assign(new Event("drop"), { dataTransfer: { files: [file] } }));
+  })()`);
+  await page.until(`!${MESSAGE}.hidden`);
+  assert.match(await page.evaluate(`${MESSAGE}.textContent`),
+    /video is refused \(invalid\): con\.magic at byte 0/);
+  assert.equal(await page.evaluate("reads"), 0);
+  await page.close();
+});
+
+test("bytes by element that cannot be counted are told of", async () => {
+  const page = await browser.page(CAMERA.width, CAMERA.height);
+  await page.before(`globalThis.Worker = class extends Worker {
+    postMessage(message, transfer) {
+      const error = { verdict: "limit", id: "limit.memory", text: "too little" };
+      if (!message.options?.budget) super.postMessage(message, transfer);
+      else setTimeout(() => this.onmessage({ data: { call: message.call, error } }));
+    }
+  }`);
+  await page.open(`${server.origin}/?file=${NAME}`);
+  await page.until("globalThis.ted4Player?.isSettled");
+  await page.evaluate(`document.getElementById("sizes").open = true; 0`);
+  await page.until(`!${MESSAGE}.hidden`, 10);
+  assert.match(await page.evaluate(`${MESSAGE}.textContent`),
+    /^Bytes by element: limit\.memory/);
+  assert.deepEqual(page.errors, []);
+  await page.close();
+});
 
 test("a message goes when it is closed, hidden with the rest, or when the next file is good",
   async () => {

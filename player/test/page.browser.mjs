@@ -277,4 +277,12 @@ test("the page that holds everything opens by file:// and plays", async (t) => {
   await alone.press(" ");
   await alone.until(`${POSITION} > 1`);
   assert.deepEqual(alone.errors, []);
+  const old = await browser.page(CAMERA.width, CAMERA.height);
+  await old.before("delete globalThis.DecompressionStream");
+  await old.open(pathToFileURL(file).href);
+  await old.until(`!document.getElementById("message").hidden`, 10);
+  assert.match(await old.evaluate(`document.getElementById("message").textContent`),
+    /cannot start in this browser: .*DecompressionStream/);
+  assert.equal(await old.evaluate(`document.getElementById("welcome").hidden`), true);
+  assert.deepEqual(old.errors, []);
 });

@@ -9,7 +9,7 @@ const VIEW = `export class View {
   static create() { return Promise.resolve(globalThis.view = new View()); }
   sets = 0; hasPicture = false; isSettled = true;
   onFrame(changed) { this.changed = changed; }
-  clear() {} setBackground() {} resize() {} setCamera() {}
+  onLoss() {} clear() {} setBackground() {} resize() {} setCamera() {}
   setGaussians() {
     globalThis.drawing();
     this.sets++;
@@ -138,3 +138,14 @@ test("a pivot is measured once something shows, and is as far as the scene is la
       assert.equal(player.navigation.distance, 100);
     }, fileWithCamera());
   });
+
+test("a flight that is interrupted, as by a lost drawing context, goes on from where it was", () =>
+  withPlayer([new StubWorker(1, good)], async ({ player, view }) => {
+    const { navigation } = player, z = () => navigation.camera.t[2];
+    const now = performance.now() + 1000, before = z();
+    view.changed(now);
+    navigation.press({ code: "KeyW", shiftKey: false });
+    view.changed(now + 60e3);
+    navigation.releaseAll();
+    assert.ok(z() < before && z() > before - 0.1 * navigation.distance, `${before}, ${z()}`);
+  }, fileWithCamera()));
