@@ -86,7 +86,7 @@ class Ted4Error(ValueError):
         return type(self), (self._code, self.offset), self.__dict__
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)  # arrays have no one answer to ==
 class Gaussians:
     """The Gaussians of one time: binary32 arrays of n rows. World axes are those of the scene;
     scales are standard deviations; rotations are w, x, y, z; colours are display-referred sRGB."""
@@ -118,7 +118,8 @@ class Scene:
         self._scene, self._recon = c.c_void_p(), c.c_void_p()
         self._lock = threading.Lock()  # of _recon and its arrays, which the next query overwrites
         self._options = _Options(max_bytes=max_bytes, max_work=max_work)
-        error, data = _Error(), bytes(memoryview(data))
+        error = _Error()
+        data = data if isinstance(data, bytes) else bytes(memoryview(data))
         if _library.ted4_decode(data, c.c_size_t(len(data)), c.byref(self._options),
                                 c.byref(self._scene), c.byref(error)):
             raise Ted4Error(error.code, error.offset)

@@ -235,7 +235,13 @@ for wrong, what in ((lambda: scene.gaussians(0.5, 1), TypeError),
         raise AssertionError(what)
     except what if isinstance(what, type) else TypeError as e:
         assert isinstance(what, type) or what in str(e), str(e)
-assert ted4.Scene(memoryview(open(path, "rb").read())).hash == wanted
+class Bytes(bytes):
+    pass
+for data in (memoryview(open(path, "rb").read()), Bytes(open(path, "rb").read())):
+    assert ted4.Scene(data).hash == wanted
+# Gaussians are compared, and are keys, as objects are.
+a, b = scene.frame(0), scene.frame(0)
+assert a != b and a == a and len({a, b}) == 2
 # Threads that share a scene get the Gaussians of the times that they ask for.
 hashes, wrong = [scene.frame(j).hash for j in range(scene.frames)], []
 def ask(j):
