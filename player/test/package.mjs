@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import {
-  copyFileSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync,
+  copyFileSync, existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync,
 } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
@@ -30,6 +30,15 @@ test("the package holds all that it exports", () => {
     .filter((path) => !path.includes("*"));
   assert.ok(paths.includes("./ted4.wasm"));
   for (const path of paths) assert.ok(existsSync(join(installed, path)), path);
+});
+
+test("all that its adapters import is declared", () => {
+  const { peerDependencies } = JSON.parse(readFileSync(join(installed, "package.json"), "utf8"));
+  const adapters = join(installed, "adapters");
+  const names = readdirSync(adapters).flatMap((file) =>
+    [...readFileSync(join(adapters, file), "utf8").matchAll(/from "([^".][^"]*)"/g)]
+      .map(([, name]) => name));
+  assert.deepEqual([...new Set(names)].sort(), Object.keys(peerDependencies).sort());
 });
 
 test("the program of the README runs in Node", () => {
