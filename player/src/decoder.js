@@ -72,8 +72,9 @@ export class Decoder {
   }
 
   // Strict decoding of a whole file. options: maxBytes of memory and maxWork (spec 13.4) that the
-  // file may ask for; budget: true also attributes its bytes to elements. Throws Ted4Error, or
-  // TypeError for a path or an address in place of bytes.
+  // file may ask for; budget: true also attributes its bytes to elements; keepsFile: false lets go
+  // of the bytes once they are decoded, and then there is no tier 0. Throws Ted4Error, or TypeError
+  // for a path or an address in place of bytes.
   open(bytes, options = {}) {
     const scene = new Scene(new WebAssembly.Instance(this.#module, {}).exports, bytes, options);
     scene.decode();
@@ -99,7 +100,9 @@ export class Scene {
   constructor(wasm, bytes, options) {
     this.#wasm = wasm;
     this.#bytes = bytesOf(bytes);
-    this.#options = { maxBytes: DEFAULT_MAX_BYTES, maxWork: 0, budget: false, ...options };
+    this.#options = {
+      maxBytes: DEFAULT_MAX_BYTES, maxWork: 0, budget: false, keepsFile: true, ...options,
+    };
     for (const name of ["maxBytes", "maxWork"])
       if (!(this.#options[name] >= 0))
         throw new RangeError(`${name}: ${this.#options[name]}, expected a number from 0`);
@@ -127,6 +130,7 @@ export class Scene {
 
   // Runs body over a copy of the file in the instance's memory, which is given back.
   #withFile(body) {
+    if (this.#bytes === null) throw new Error("the file is gone: it was opened without keepsFile");
     const size = this.#bytes.length;
     const address = this.#wasm.ted4_wasm_alloc(size) >>> 0;
     if (address === 0) throw this.#error(this.#codeOf("limit.memory"), 0);
@@ -150,7 +154,7 @@ export class Scene {
       this.#wasm.ted4_wasm_open(address, size, maxBytes, maxWork, budget ? 1 : 0));
     if (code !== 0)
       throw this.#error(code, this.#view().getUint32(this.#wasm.ted4_wasm_error() + 4, true));
-    this.info = this.#readInfo();
+    this.#endDecoding();
   }
 
   decodeLenient() {
@@ -161,12 +165,17 @@ export class Scene {
     const at = this.#wasm.ted4_wasm_salvage();
     const [tiles, tilesDeclared, anchorsDeclared, stop, stopOffset] =
       Array.from({ length: 5 }, (_, i) => this.#view().getUint32(at + 4 * i, true));
-    this.info = this.#readInfo();
+    this.#endDecoding();
     return {
       error: code === 0 ? null : this.#error(code, offset),
       salvage: { tiles, tilesDeclared, anchorsDeclared, stop: this.#error(stop, stopOffset) },
       scene: this.info === null ? null : this,
     };
+  }
+
+  #endDecoding() {
+    this.info = this.#readInfo();
+    if (!this.#options.keepsFile) this.#bytes = null;
   }
 
   #readInfo() {

@@ -21,6 +21,9 @@ export interface OpenOptions {
   maxWork?: number;
   /** Attribute the file's bytes to its elements, too. */
   budget?: boolean;
+  /** Keep the file's bytes, which only tier(0) needs, after decoding; true if it is missing. A
+   *  Ted4Client keeps none. */
+  keepsFile?: boolean;
 }
 
 export interface SceneInfo {
@@ -90,7 +93,8 @@ export class Scene {
   gaussians(num: number, den: number, camera?: Vector): Gaussians;
   frame(j: number, camera?: Vector): Gaussians;
   bytesByElement(): Element[];
-  /** Size and XXH3-128 of a tier of annex J, 0 to 4; null: no memory. */
+  /** Size and XXH3-128 of a tier of annex J, 0 to 4; null: no memory. Throws for tier 0 of a file
+   *  that was not kept. */
   tier(number: number): { bytes: number; xxh3: string } | null;
   /** The same of the records of the last query (T5). */
   records(): { bytes: number; xxh3: string };

@@ -27,7 +27,7 @@ const actions = {
   open({ scene, bytes, options }) {
     if (decoder === null) throw new Error("no decoder: call load() before open()");
     const start = performance.now();
-    const opened = decoder.open(bytes, options);
+    const opened = decoder.open(bytes, { ...options, keepsFile: false });
     scenes.set(scene, opened);
     return {
       info: opened.info, bytesByElement: options?.budget ? opened.bytesByElement() : null,

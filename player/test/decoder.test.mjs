@@ -94,6 +94,16 @@ test("a time beyond the last is refused", () => {
   assert.throws(() => decoder.open(contents[0].bytes).gaussians(2, 1), Ted4Error);
 });
 
+test("a scene that does not keep its file has all that was decoded of it", () => {
+  const { bytes, wanted } = contents[0], scene = decoder.open(bytes, { keepsFile: false });
+  assert.throws(() => scene.tier(0), { message: /keepsFile/ });
+  assert.equal(scene.tier(1).xxh3, wanted.tiers.T1.xxh3);
+  assert.equal(scene.frame(0).n, scene.info.gaussians);
+  assert.equal(decoder.open(bytes).tier(0).bytes > 0, true);
+  assert.throws(() => decoder.salvage(bytes, { keepsFile: false }).scene.tier(0),
+    { message: /keepsFile/ });
+});
+
 test("every scene has memory of its own", () => {
   const [a, b] = [decoder.open(contents[0].bytes), decoder.open(contents.at(-1).bytes)];
   const before = a.frame(0).mean[0].slice();
