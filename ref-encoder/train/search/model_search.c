@@ -210,14 +210,18 @@ static int try_candidate(search *s, ted4_candidate m)
     int lost = 0, bad = ted4_state_restore(s->t, &s->now) != 0;
     const int from = ted4_candidate_now(s->t, m);
 
+    s->untrained[m].to = -1;
+    if (!bad && to >= from) /* what was taken meanwhile has removed the part, or made it smaller */
+        return 0;
     bad = bad || ted4_candidate_make(s->t, m, to) != 0 || ted4_state_take(s->t, &start) != 0 ||
           train(s, &end, &after, &lost) != 0;
     s->spent += s->steps;
 
     const int taken = !bad && !lost && after.cost < before.cost;
 
+    if (lost)
+        after = before; /* nothing is known of it */
     bad = bad || note(s, m, from, to, taken, s->steps, &before, &after) != 0;
-    s->untrained[m].to = -1;
     if (!bad && taken) {
         swap(&s->now, &start);
         swap(&s->trained, &end);
