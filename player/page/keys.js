@@ -39,7 +39,7 @@ export function bindKeys(player, timeline) {
     const action = steps[key] ?? switches[key];
     // A key that is held steps on, but switches once.
     if (action && !(e.repeat && key in switches)) action();
-    if (navigation.press(e) || action) e.preventDefault();
+    if (action || navigation.press(e)) e.preventDefault();
   });
   addEventListener("keyup", (e) => navigation.release(e));
   addEventListener("blur", () => navigation.releaseAll());

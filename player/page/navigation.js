@@ -1,5 +1,5 @@
 // navigation.js - moves the camera by mouse, touch and keys: orbit about a pivot, or look around in
-// place; pan; come nearer; fly.
+// place; pan; come nearer; fly. Keys that fly and turn go by their places on the keyboard.
 // SPDX-License-Identifier: BSD-2-Clause
 import {
   add, centreOf, down, fitted, forward, moved, orbited, right, scaled,
@@ -9,6 +9,8 @@ const TURN = 0.005; // radians a pixel
 const WHEEL = 0.001; // of the logarithm of the distance, a unit
 const FAST = 4; // times faster with Shift
 const CROSSING_SECONDS = 3; // to fly as far as the pivot is
+const TURN_SPEED = 200; // pixels of a drag, a second, by keys
+const TURNS = { KeyI: [0, -1], KeyK: [0, 1], KeyJ: [-1, 0], KeyL: [1, 0] }; // right, down
 const FLIGHT = {
   KeyW: [0, 0, 1], KeyS: [0, 0, -1], KeyA: [-1, 0, 0], KeyD: [1, 0, 0], KeyQ: [0, 1, 0],
   KeyE: [0, -1, 0],
@@ -81,10 +83,10 @@ export class Navigation {
     this.distance *= factor;
   }
 
-  // Whether the key flies.
+  // Whether the key flies or turns.
   press(e) {
     this.#isFast = e.shiftKey;
-    if (!(e.code in FLIGHT)) return false;
+    if (!(e.code in FLIGHT || e.code in TURNS)) return false;
     this.#keys.add(e.code);
     return true;
   }
@@ -98,14 +100,19 @@ export class Navigation {
     this.#keys.clear();
   }
 
-  // Flies for that many seconds, if keys are down.
+  // Flies and turns for that many seconds, if keys are down.
   fly(seconds) {
     if (this.#keys.size === 0 || this.camera === null) return;
-    const way = this.distance / CROSSING_SECONDS * seconds * (this.#isFast ? FAST : 1);
-    const axes = [right(this.camera), down(this.camera), forward(this.camera)];
+    const time = seconds * (this.#isFast ? FAST : 1);
     for (const code of this.#keys)
-      FLIGHT[code].forEach((v, i) => {
-        this.camera = moved(this.camera, scaled(axes[i], v * way));
-      });
+      if (code in TURNS) this.#turn(...TURNS[code].map((v) => v * TURN_SPEED * time));
+      else this.#advance(FLIGHT[code], this.distance / CROSSING_SECONDS * time);
+  }
+
+  #advance(direction, way) {
+    const axes = [right(this.camera), down(this.camera), forward(this.camera)];
+    direction.forEach((v, i) => {
+      this.camera = moved(this.camera, scaled(axes[i], v * way));
+    });
   }
 }

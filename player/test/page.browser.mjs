@@ -186,6 +186,40 @@ test("W flies as long as it is held", async () => {
   assert.equal(await way(() => page.until("ted4Player.isSettled")), 0);
 });
 
+const FORWARD = "ted4Player.navigation.camera.R.slice(6)";
+
+// For some frames, a key that says that and is at the place of that code.
+const held = (key, code) => page.evaluate(`(async () => {
+  const send = (type) => document.body.dispatchEvent(
+    new KeyboardEvent(type, { key: "${key}", code: "${code}", bubbles: true }));
+  send("keydown");
+  for (let i = 0; i < 4; i++) await new Promise(requestAnimationFrame);
+  send("keyup");
+})()`);
+
+test("keys turn the camera about the pivot as long as they are held", async () => {
+  const distance = await page.evaluate(DISTANCE);
+  const pivot = async () => {
+    const [centre, ahead] = await page.evaluate(`[${CENTRE}, ${FORWARD}]`);
+    return centre.map((v, i) => v + distance * ahead[i]);
+  };
+  const about = await pivot();
+  for (const key of ["j", "l", "i", "k"]) {
+    const before = await page.evaluate(FORWARD);
+    await held(key, `Key${key.toUpperCase()}`);
+    assert.notDeepEqual(await page.evaluate(FORWARD), before, key);
+    (await pivot()).forEach((v, i) => assert.ok(Math.abs(v - about[i]) < 1e-4, key));
+    assert.equal(await page.evaluate(DISTANCE), distance);
+  }
+  await page.until("ted4Player.isSettled");
+});
+
+test("a key that steps does not fly, too, where keyboards have it at the place of E", async () => {
+  await page.evaluate("ted4Player.clock.seek(0); 0");
+  assert.equal(await way(() => held(".", "KeyE")), 0);
+  assert.equal(await page.evaluate(POSITION), 1);
+});
+
 test("the question mark opens the help, which Escape closes", async () => {
   await page.press("?");
   assert.equal(await page.evaluate(`document.getElementById("help").open`), true);
