@@ -8,6 +8,7 @@
 #include "ball_group.h"
 #include "ball_missing.h"
 #include "train/densify/mv_seed.h"
+#include "train/densify/photo_votes.h"
 #include "train/densify/plane_sweep.h"
 #include "train/state/anchor_appearance.h"
 #include "train/step/events.h"
@@ -69,8 +70,8 @@ static void test_long(void **state)
 
     (void)state;
     for (uint32_t n = 1; n <= 36000; n++) {
-        assert_true(ted4_mv_seed_capacity(n) > 0);
-        assert_true(ted4_mv_seed_capacity(n) * n <= (size_t)1 << 27);
+        assert_true(ted4_photo_votes_capacity(n) > 0);
+        assert_true(ted4_photo_votes_capacity(n) * n <= (size_t)1 << 27);
     }
     ball_begin(&t, &o, &balls, NULL);
     ball_train(&t, STEPS);

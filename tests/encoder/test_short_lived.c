@@ -6,6 +6,7 @@
 
 #include "test.h"
 #include "ball_scene.h"
+#include "train/densify/photo_votes.h"
 #include "train/densify/short_lived.h"
 #include "train/step/trainer_init.h"
 
@@ -17,21 +18,32 @@ typedef struct {
     ted4_trainer trainer;
 } scene;
 
-static void open_scene(scene *s, int moving, int activation, int short_lived)
+static void load_scene(scene *s, int moving)
 {
-    const ted4_dataset_options o = { .downscale = 1, .seed = 3, .cache_bytes = 1 << 20 };
-    ted4_train_options train;
+    const ted4_dataset_options o = { .downscale = 1, .seed = 3, .cache_bytes = 1 };
     ted4_message m;
 
     s->folder = tiny_new();
     ball_scene(&s->folder, FRAMES, moving);
     if (ted4_dataset_load(&s->data, s->folder.path, &o, &m) != 0)
         fail_msg("%s", m.text);
+}
+
+static void begin(scene *s, int activation, int short_lived)
+{
+    ted4_train_options train;
+
     assert_int_equal(ted4_options_preset(&train, "draft"), 0);
     train.activation = activation;
     train.transients = short_lived;
     if (ted4_trainer_init(&s->trainer, &train, &s->data, NULL) != 0)
         fail_msg("%s", s->trainer.message.text);
+}
+
+static void open_scene(scene *s, int moving, int activation, int short_lived)
+{
+    load_scene(s, moving);
+    begin(s, activation, short_lived);
 }
 
 static void close_scene(scene *s)
@@ -123,13 +135,47 @@ static void test_off(void **state)
     expect_none(1, 1, 0);
 }
 
+/* With two cameras, no picture is read: their files are gone. */
+static void test_two_cameras(void **state)
+{
+    scene s;
+
+    (void)state;
+    load_scene(&s, 1);
+    for (size_t i = 0; i < s.data.n_pictures; i++)
+        s.data.pictures[i].is_test = s.data.pictures[i].camera_id >= TED4_CAMERAS_NEEDED - 1;
+    begin(&s, 1, 0);
+    tiny_free(&s.folder);
+    assert_int_equal(ted4_init_short_lived(&s.trainer, s.trainer.anchors.n), 0);
+    for (size_t i = 0; i < s.trainer.anchors.n; i++)
+        assert_false(ted4_is_short_lived(&s.trainer, i));
+    ted4_trainer_finish(&s.trainer);
+    ted4_dataset_free(&s.data);
+}
+
+/* The spans do not depend on how many anchors are looked at together. */
+static void test_in_parts(void **state)
+{
+    enum { PARTS = 7 };
+    scene s[2];
+
+    (void)state;
+    for (int i = 0; i < 2; i++)
+        open_scene(&s[i], 1, 1, i == 0);
+    assert_int_equal(ted4_init_short_lived(&s[1].trainer, s[1].trainer.anchors.n / PARTS), 0);
+    for (size_t i = 0; i < s[0].trainer.anchors.n; i++)
+        for (int c = 0; c < 4; c++)
+            assert_true(tau(&s[0].trainer, i, c) == tau(&s[1].trainer, i, c));
+    for (int i = 0; i < 2; i++)
+        close_scene(&s[i]);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_moving),
-        cmocka_unit_test(test_still),
-        cmocka_unit_test(test_no_activation),
-        cmocka_unit_test(test_off),
+        cmocka_unit_test(test_moving),        cmocka_unit_test(test_still),
+        cmocka_unit_test(test_no_activation), cmocka_unit_test(test_off),
+        cmocka_unit_test(test_two_cameras),   cmocka_unit_test(test_in_parts),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -148,7 +148,7 @@ int ted4_mv_seed(ted4_trainer *t)
 
     for (uint32_t f = 0; !bad && f < t->data->n_frames; f++)
         bad = ted4_mv_seed_search(t, f, &list) != 0;
-    if (!bad && arrange(&list, ted4_mv_seed_capacity(t->data->n_frames), &point, &colour) != 0)
+    if (!bad && arrange(&list, ted4_photo_votes_capacity(t->data->n_frames), &point, &colour) != 0)
         bad = ted4_trainer_fail(t, "no memory for new anchors");
     bad = bad || ted4_photo_votes_count(&s, t, point, colour, list.n) != 0 ||
           ted4_seeding_begin(t, &l) != 0 || plant(t, &list, &s, &l) != 0;

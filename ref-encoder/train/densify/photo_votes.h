@@ -41,6 +41,13 @@ typedef struct {
                               observe the point */
 } ted4_photo_votes;
 
+/* Returns the largest number of points of which votes are counted at a time: points times frames
+ * must not exceed 2^27, at four bytes each. Only long sequences come near this limit. */
+static inline size_t ted4_photo_votes_capacity(uint32_t n_frames)
+{
+    return ((size_t)1 << 27) / n_frames;
+}
+
 /* Counts the votes of all training pictures. Returns 0, or -1 with t->message filled; free s in
  * either case. */
 int ted4_photo_votes_count(ted4_photo_votes *s, ted4_trainer *t, const float *point,

@@ -244,7 +244,7 @@ int ted4_mv_seed_search(ted4_trainer *t, uint32_t frame, ted4_places *list)
         if (search_view(t, views, n, i, frame, list) != 0)
             bad = ted4_trainer_fail(t, "no memory to look for what is missing");
 
-    const size_t share = ted4_mv_seed_capacity(t->data->n_frames) / t->data->n_frames;
+    const size_t share = ted4_photo_votes_capacity(t->data->n_frames) / t->data->n_frames;
 
     if (!bad && thin(list, first, share > 0 ? share : 1) != 0)
         bad = ted4_trainer_fail(t, "no memory to look for what is missing");

@@ -24,18 +24,10 @@ typedef struct {
     size_t n, capacity;
 } ted4_places;
 
-/* Returns the largest number of places for a sequence. Each place is looked up in every frame, and
- * places times frames must not exceed 2^27, at four bytes each (photo_votes.h). Only long sequences
- * come near this limit. */
-static inline size_t ted4_mv_seed_capacity(uint32_t n_frames)
-{
-    return ((size_t)1 << 27) / n_frames;
-}
-
 /* Appends the places that the model misses in one frame to the list, in a fixed order. It adds at
  * most one place per voxel of the place's size. In long sequences it keeps only the most reliable
- * ones, up to the frame's share of ted4_mv_seed_capacity, but at least one. Returns 0, or -1 with
- * t->message filled. */
+ * ones, up to the frame's share of ted4_photo_votes_capacity, but at least one. Returns 0, or -1
+ * with t->message filled. */
 int ted4_mv_seed_search(ted4_trainer *t, uint32_t frame, ted4_places *list);
 
 #endif

@@ -42,14 +42,30 @@ int ted4_is_short_lived(const ted4_trainer *t, size_t i)
                              1.0f;
 }
 
-int ted4_init_short_lived(ted4_trainer *t)
+/* Sets the spans of n anchors from the first on. place, colour: of these anchors. */
+static int set_spans(ted4_trainer *t, size_t first, const float *place, const uint8_t *colour,
+                     size_t n)
+{
+    ted4_photo_votes s;
+    const int bad = ted4_photo_votes_count(&s, t, place, colour, n) != 0;
+
+    for (size_t i = 0; !bad && i < n; i++) {
+        ted4_span span;
+
+        if (ted4_photo_votes_span(&s, i, ted4_photo_votes_best(&s, i), &span))
+            ted4_span_set(t, first + i, &span);
+    }
+    ted4_photo_votes_free(&s);
+    return bad ? -1 : 0;
+}
+
+int ted4_init_short_lived(ted4_trainer *t, size_t most)
 {
     const size_t n = t->anchors.n;
-    ted4_photo_votes s = { 0 };
     int bad;
 
     if (t->layout.first[TED4_TAU] < 0 || t->data->n_frames < 2 || t->data->random_points ||
-        t->data->point_rgb == NULL)
+        t->data->point_rgb == NULL || ted4_most_cameras(t->data) < TED4_CAMERAS_NEEDED)
         return 0;
     float *points = malloc((t->data->n_points + 1) * 3 * sizeof *points);
     float *place = malloc((n + 1) * 3 * sizeof *place);
@@ -62,17 +78,12 @@ int ted4_init_short_lived(ted4_trainer *t)
         for (size_t i = 0; i < t->data->n_points; i++)
             ted4_normalise_point(&t->layout.head, t->data->points + 3 * i, points + 3 * i);
         describe(t, points, place, colour);
-        bad = ted4_photo_votes_count(&s, t, place, colour, n) != 0;
     }
-    for (size_t i = 0; !bad && i < n; i++) {
-        ted4_span span;
-
-        if (ted4_photo_votes_span(&s, i, ted4_photo_votes_best(&s, i), &span))
-            ted4_span_set(t, i, &span);
-    }
+    for (size_t first = 0; !bad && first < n; first += most)
+        bad = set_spans(t, first, place + 3 * first, colour + 3 * first,
+                        n - first < most ? n - first : most) != 0;
     free(points);
     free(place);
     free(colour);
-    ted4_photo_votes_free(&s);
     return bad ? -1 : 0;
 }

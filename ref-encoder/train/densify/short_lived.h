@@ -11,9 +11,10 @@
  * learnt, and every trace of fast motion with them. So an anchor starts with its activation limited
  * to a span if, in some frames, at least half of the cameras see its colour at its place, while in
  * most other frames clearly fewer do, or in some frames hardly any (ted4_photo_votes_span). Needs
- * at least three cameras per frame: with fewer, chance matches decide. Does nothing without
- * activation. Returns 0, or -1 with t->message filled. */
-int ted4_init_short_lived(ted4_trainer *t);
+ * TED4_CAMERAS_NEEDED cameras in some frame, and activation; reads no picture without them. most >=
+ * 1: number of anchors looked at together, for which all pictures are read once; no result depends
+ * on it. Returns 0, or -1 with t->message filled. */
+int ted4_init_short_lived(ted4_trainer *t, size_t most);
 
 /* Returns whether anchor i was given such a span. */
 int ted4_is_short_lived(const ted4_trainer *t, size_t i);

@@ -51,12 +51,9 @@ double ted4_span_bits(const ted4_span *s)
     return bits;
 }
 
-void ted4_span_times(uint32_t n_frames, float *time)
+static float part_value(const ted4_span *s, int part)
 {
-    const size_t n = ted4_span_n_times(n_frames);
-
-    for (size_t i = 0; i < n; i++)
-        time[i] = n > 1 ? (float)i / (float)(n - 1) : 0.0f;
+    return (float)s->k[part] * s->step;
 }
 
 /* The activation beyond an edge, at the times from first to last - 1 (spec 11.4). */
@@ -78,7 +75,7 @@ void ted4_span_activation(const ted4_span *s, const float *time, size_t n, float
     size_t first = 0, last = n; /* times within the span */
 
     for (int i = 0; i < TED4_SPAN_PARTS; i++)
-        tau[i * TED4_LANES] = (float)s->k[i] * s->step;
+        tau[i * TED4_LANES] = part_value(s, i);
 
     const float start = tau[START * TED4_LANES], end = tau[END * TED4_LANES];
 
@@ -92,26 +89,92 @@ void ted4_span_activation(const ted4_span *s, const float *time, size_t n, float
     beyond_edge(time, tau, end, last, n, activation);
 }
 
-double ted4_span_change(const float *a, const float *b, size_t n)
-{
-    double sum = 0;
+/* Times at which activations by two spans may differ, as indices from first to last - 1. Of so many
+ * that follow each other, one is looked at. */
+typedef struct {
+    size_t first, last, each;
+} time_range;
 
-    for (size_t i = 0; i < n; i++)
-        sum += (double)((a[i] - b[i]) * (a[i] - b[i]));
-    return sum / (double)n;
+/* FAR: in widths; so far beyond an edge, activation is e^-16, and its square a billionth of what a
+ * bit is worth. FINE: at least so many times are looked at in one width, if there are more than
+ * ENOUGH in all; from one to the next, activation changes by a twentieth at most. */
+#define FAR 4.0
+enum { FINE = 16, ENOUGH = 512 };
+
+static double width_of(const ted4_span *s, int edge)
+{
+    return (double)fmaxf(ted4_pow2(part_value(s, edge + 1)), TED4_EDGE_MIN);
+}
+
+/* Returns how many of n times from 0 to 1 are before t. */
+static size_t count_before(double t, size_t n)
+{
+    return (size_t)fmin(fmax(ceil(t * (double)(n - 1)), t > 0), (double)n);
+}
+
+/* The times beyond an edge of either span; no further ones, where both activations are nearly 0. */
+static time_range find_range(const ted4_span *a, const ted4_span *b, int edge, size_t n)
+{
+    const double side = edge == START ? -1 : 1;
+    const double at[2] = { (double)part_value(a, edge), (double)part_value(b, edge) };
+    const double width[2] = { width_of(a, edge), width_of(b, edge) };
+    const double inner = fmin(side * at[0], side * at[1]);
+    const double outer = fmax(side * at[0] + FAR * width[0], side * at[1] + FAR * width[1]);
+    const double apart = fmin(fmin(width[0], width[1]) / FINE, 1.0 / ENOUGH);
+    const size_t each = (size_t)(apart * (double)(n - 1));
+    time_range r = { count_before(inner, n), count_before(outer, n), each > 1 ? each : 1 };
+
+    if (edge == START) {
+        r.first = count_before(-outer, n);
+        r.last = count_before(-inner, n);
+    }
+    return r;
 }
 
 /* The search for one symbol. */
 typedef struct {
     ted4_span *s;
+    ted4_span given;
     int part;
-    size_t n;
-    const float *time;  /* [n] */
-    const float *given; /* [n] activation by the given symbols */
-    float *now;         /* [n] */
+    size_t n; /* number of times */
     int best;
     double least; /* cost of the best symbol so far */
 } search;
+
+/* Adds the squared differences between activations by the present and the given span to sum, until
+ * that is most or more. */
+static double add_changes(const search *f, time_range r, double sum, double most)
+{
+    enum { RUN = 64 };
+    float time[RUN], now[RUN], given[RUN];
+
+    while (r.first < r.last && sum < most) {
+        size_t n = 0, weight[RUN];
+
+        for (; n < RUN && r.first < r.last; n++, r.first += r.each) {
+            weight[n] = r.last - r.first < r.each ? r.last - r.first : r.each;
+            time[n] = ted4_span_time(r.first + weight[n] / 2, f->n);
+        }
+        ted4_span_activation(f->s, time, n, now);
+        ted4_span_activation(&f->given, time, n, given);
+        for (size_t i = 0; i < n; i++)
+            sum += (double)weight[i] * (double)((now[i] - given[i]) * (now[i] - given[i]));
+    }
+    return sum;
+}
+
+/* Returns the mean squared difference between activations by the present and the given span, or,
+ * once it is at least f->least, some number that is. */
+static double change(const search *f)
+{
+    const double most = f->least * (double)f->n;
+    const time_range start = find_range(f->s, &f->given, START, f->n);
+    time_range end = find_range(f->s, &f->given, END, f->n);
+
+    if (end.first < start.last) /* one span is before the other */
+        end.first = start.last;
+    return add_changes(f, end, add_changes(f, start, 0, most), most) / (double)f->n;
+}
 
 /* A symbol, the change of activation and the bits that it means. */
 typedef struct {
@@ -124,8 +187,7 @@ static candidate try_symbol(search *f, int k)
     candidate c = { .k = k };
 
     f->s->k[f->part] = k;
-    ted4_span_activation(f->s, f->time, f->n, f->now);
-    c.change = ted4_span_change(f->now, f->given, f->n);
+    c.change = change(f);
     c.bits = part_bits(f->s, f->part);
     if (c.change + WORTH * c.bits < f->least) {
         f->least = c.change + WORTH * c.bits;
@@ -172,12 +234,11 @@ static int choose_part(search *f, int part)
     return f->best != given;
 }
 
-void ted4_span_choose(ted4_span *s, const float *time, size_t n, float *scratch)
+void ted4_span_choose(ted4_span *s, size_t n)
 {
-    search f = { .s = s, .n = n, .time = time, .given = scratch, .now = scratch + n };
+    search f = { .s = s, .given = *s, .n = n };
     int changed = 1;
 
-    ted4_span_activation(s, time, n, scratch);
     for (int pass = 0; changed && pass < PASSES; pass++) {
         changed = 0;
         for (int i = 0; i < TED4_SPAN_PARTS; i++)
@@ -189,10 +250,7 @@ void ted4_span_choose(ted4_span *s, const float *time, size_t n, float *scratch)
 typedef struct {
     ted4_trainer *t;
     ted4_prior prior;
-    int32_t *out;   /* [BATCH][P][64], owned by the arena: outputs of the hyperprior */
-    float *time;    /* [n_times], owned by the arena */
-    float *scratch; /* [BATCH][2][n_times], owned by the arena */
-    size_t n_times;
+    int32_t *out; /* [BATCH][P][64], owned by the arena: outputs of the hyperprior */
     size_t first; /* the first block of the batch */
 } chooser;
 
@@ -213,6 +271,11 @@ static size_t step_row(const ted4_shape *s)
     return row;
 }
 
+static int nearest_symbol(float value, float step)
+{
+    return (int)fmaxf(-MOST, fminf(MOST, rintf(value / step)));
+}
+
 /* Returns the span of an anchor as it would be rounded. out: the outputs of the hyperprior for it,
  * TED4_PRIOR_BLOCK apart. */
 static ted4_span rounded_span(ted4_trainer *t, size_t anchor, const int32_t *out)
@@ -223,9 +286,7 @@ static ted4_span rounded_span(ted4_trainer *t, size_t anchor, const int32_t *out
     ted4_span s = { .step = t->layout.head.step[TED4_TAU] * ted4_bits_float(ted4_step[index]) };
 
     for (int i = 0; i < TED4_SPAN_PARTS; i++) {
-        const float k = rintf(*tau_value(t, anchor, i) / s.step);
-
-        s.k[i] = (int)fmaxf(-MOST, fminf(MOST, k));
+        s.k[i] = nearest_symbol(*tau_value(t, anchor, i), s.step);
         s.mu[i] = model[i * TED4_PRIOR_BLOCK];
         s.sigma[i] = ted4_sigma_index(model[(TED4_SPAN_PARTS + i) * TED4_PRIOR_BLOCK]);
     }
@@ -241,7 +302,6 @@ static void choose_block(void *arg, size_t i)
     const size_t first = (c->first + i) * TED4_LANES, left = t->anchors.n - first;
     const size_t n = left < TED4_LANES ? left : TED4_LANES;
     int32_t *out = c->out + i * t->layout.shape.n_outputs * TED4_PRIOR_BLOCK;
-    float *scratch = c->scratch + i * 2 * c->n_times;
     uint16_t position[TED4_LANES][3] = { { 0 } };
 
     for (size_t j = 0; j < n; j++)
@@ -250,20 +310,22 @@ static void choose_block(void *arg, size_t i)
                 *ted4_anchor_value(&t->anchors, TED4_ROW_POSITION, first + j, axis));
     ted4_prior_hyper(&c->prior, position[0], n, out);
     for (size_t j = 0; j < n; j++) {
-        const ted4_span given = rounded_span(t, first + j, out + j);
-        ted4_span chosen = given;
+        ted4_span chosen = rounded_span(t, first + j, out + j);
 
-        ted4_span_choose(&chosen, c->time, c->n_times, scratch);
-        for (int part = 0; part < TED4_SPAN_PARTS; part++)
-            if (chosen.k[part] != given.k[part])
-                *tau_value(t, first + j, part) = (float)chosen.k[part] * chosen.step;
+        ted4_span_choose(&chosen, ted4_span_n_times(t->data->n_frames));
+        for (int part = 0; part < TED4_SPAN_PARTS; part++) {
+            float *value = tau_value(t, first + j, part);
+
+            if (nearest_symbol(*value, chosen.step) != chosen.k[part])
+                *value = part_value(&chosen, part);
+        }
     }
 }
 
 int ted4_choose_spans(ted4_trainer *t)
 {
     const size_t n_blocks = t->anchors.n_blocks;
-    chooser c = { .t = t, .n_times = ted4_span_n_times(t->data->n_frames) };
+    chooser c = { .t = t };
     ted4_arena arena;
     int bad;
 
@@ -275,11 +337,7 @@ int ted4_choose_spans(ted4_trainer *t)
     c.prior.dense = ted4_select_int_dense();
     c.out = ted4_arena_alloc(&arena, BATCH * (size_t)t->layout.shape.n_outputs,
                              TED4_PRIOR_BLOCK * sizeof *c.out);
-    c.time = ted4_arena_alloc(&arena, c.n_times, sizeof *c.time);
-    c.scratch = ted4_arena_alloc(&arena, BATCH * c.n_times, 2 * sizeof *c.scratch);
-    bad = bad || c.out == NULL || c.time == NULL || c.scratch == NULL;
-    if (!bad)
-        ted4_span_times(t->data->n_frames, c.time);
+    bad = bad || c.out == NULL;
     for (c.first = 0; !bad && c.first < n_blocks; c.first += BATCH)
         ted4_parallel_for(t->parallel, n_blocks - c.first < BATCH ? n_blocks - c.first : BATCH,
                           choose_block, &c);

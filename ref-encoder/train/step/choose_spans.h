@@ -26,15 +26,16 @@ static inline size_t ted4_span_n_times(uint32_t n_frames)
 {
     return 2 * (size_t)n_frames - 1;
 }
-/* time: [ted4_span_n_times()] out, from 0 to 1, in ascending order. */
-void ted4_span_times(uint32_t n_frames, float *time);
-/* time: [n], n >= 1, ascending. activation: [n] out, from 0 to 1 (spec 11.4). */
+/* Returns time i of n, from 0 to 1. */
+static inline float ted4_span_time(size_t i, size_t n)
+{
+    return n > 1 ? (float)i / (float)(n - 1) : 0.0f;
+}
+/* time: [n], ascending. activation: [n] out, from 0 to 1 (spec 11.4). */
 void ted4_span_activation(const ted4_span *s, const float *time, size_t n, float *activation);
-/* Returns the mean squared difference of two activations: [n], n >= 1. */
-double ted4_span_change(const float *a, const float *b, size_t n);
-/* Moves symbols towards their means, where the bits saved are worth the change of activation.
- * Afterwards k[0] <= k[2] still. time: [n], n >= 1, ascending. scratch: [2][n]. */
-void ted4_span_choose(ted4_span *s, const float *time, size_t n, float *scratch);
+/* Moves symbols towards their means, where the bits saved are worth the change of activation at n
+ * >= 1 times. Afterwards k[0] <= k[2] still. The time that it takes hardly depends on n. */
+void ted4_span_choose(ted4_span *s, size_t n);
 
 /* Chooses the symbols of all spans, and moves the trainer's values to those that have changed. The
  * trainer must be in its integer stage. Does nothing if the model has no activation. Returns 0, or

@@ -8,6 +8,7 @@
 #include "norm/half.h"
 #include "train/densify/camera_colour_init.h"
 #include "train/densify/camera_exposure_init.h"
+#include "train/densify/photo_votes.h"
 #include "train/densify/short_lived.h"
 #include "train/densify/viewpoints.h"
 #include "train/math/random.h"
@@ -107,7 +108,9 @@ static int begin(ted4_trainer *t, const ted4_header *h)
     ted4_init_networks(t->net.value, &t->layout, t->opt.seed);
     if (ted4_camera_colour_init(t) != 0 || ted4_camera_exposure_init(t) != 0)
         return -1;
-    return t->opt.transients ? ted4_init_short_lived(t) : 0;
+    return t->opt.transients
+               ? ted4_init_short_lived(t, ted4_photo_votes_capacity(t->data->n_frames))
+               : 0;
 }
 
 int ted4_trainer_init(ted4_trainer *t, const ted4_train_options *o, ted4_dataset *d,
