@@ -28,7 +28,7 @@ int ted4_monitor_begin(ted4_trainer *t)
 int ted4_monitor_recover(ted4_trainer *t)
 {
     ted4_monitor *w = &t->monitor;
-    const uint64_t rollbacks = w->state.rollbacks, failed = t->iteration;
+    const uint64_t rollbacks = w->state.rollbacks;
     const double factor = w->state.factor, seconds = t->seconds;
     const ted4_message m = t->message;
 
@@ -47,10 +47,6 @@ int ted4_monitor_recover(ted4_trainer *t)
     w->state.factor = SMALLER * factor;
     w->state.rollbacks = rollbacks + 1;
     t->seconds = seconds;
-    /* If no step lies between the good state and the failure, smaller learning rates change
-     * nothing; therefore that picture is skipped. */
-    if (failed == t->iteration && t->order.next < t->order.n)
-        t->order.next++;
     ted4_monitor_forget(t);
     return 0;
 }

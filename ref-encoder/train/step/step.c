@@ -193,7 +193,20 @@ static int one_step(ted4_trainer *t)
     return 0;
 }
 
+/* Goes back to the last good state. If no step lies between it and the failure, smaller learning
+ * rates change nothing; therefore those pictures are skipped. */
+static int recover(ted4_trainer *t)
+{
+    const uint64_t failed = t->iteration;
+    const uint32_t *item;
+    size_t n;
+
+    if (ted4_monitor_recover(t) != 0)
+        return -1;
+    return t->iteration == failed ? ted4_next_pictures(t, &item, &n) : 0;
+}
+
 int ted4_gradient_step(ted4_trainer *t)
 {
-    return one_step(t) == 0 ? ted4_trainer_report(t, 1) : ted4_monitor_recover(t);
+    return one_step(t) == 0 ? ted4_trainer_report(t, 1) : recover(t);
 }
