@@ -90,6 +90,19 @@ static int is_of_bits(const struct ted4_trial *x)
     return x->candidate >= TED4_CANDIDATE_HEAD_BITS && x->candidate <= TED4_CANDIDATE_PRIOR_BITS;
 }
 
+/* Asserts that a trained trial was worth it, judged by the model that it was looked at with: four
+ * fifths of the distortion that it added untrained would have to come back for a gain. */
+static void check_worth(const ted4_trainer *t, const struct ted4_trial *trained)
+{
+    for (const struct ted4_trial *x = trained; x-- > t->search.trial;)
+        if (x->candidate == trained->candidate && x->to == trained->to) {
+            const double added = fmax(x->after.distortion - x->before.distortion, 0);
+
+            assert_true(x->after.cost - 0.8 * added < x->before.cost);
+            return;
+        }
+}
+
 /* Asserts that each accepted trial lowers the cost and each rejected one does not. The first
  * reductions of the bits of the heads' weights save hundreds of bytes without a visible change, so
  * at least one trial is accepted. Returns the number of trials that were trained. */
@@ -109,6 +122,8 @@ static int check_trials(const ted4_trainer *t)
         assert_int_equal(x->taken, x->after.cost < x->before.cost);
         taken += x->taken != 0;
         trained += x->steps > 0;
+        if (x->steps > 0)
+            check_worth(t, x);
         assert_true(x->candidate != TED4_CANDIDATE_ANCHORS || i + 1 == t->search.n_trials);
     }
     assert_true(taken > 0);

@@ -40,9 +40,10 @@ typedef struct {
     int steps;            /* of a trained trial */
     struct {
         int from, to;
-        ted4_cost cost;
-    } untrained[TED4_CANDIDATES]; /* the next trial of each candidate, with its untrained cost; to
-                                     is -1 if there is none */
+        ted4_cost cost, base;
+    } untrained[TED4_CANDIDATES]; /* the next trial of each candidate, with its untrained cost, and
+                                     that of the model it was applied to; to is -1 if there is
+                                     none */
 } search;
 
 double ted4_model_search_steps(const ted4_trainer *t)
@@ -110,6 +111,7 @@ static int look(search *s, ted4_candidate m, int bold)
     s->spent += m == TED4_CANDIDATE_OFFSETS ? ted4_opacity_sensitivity_steps(s->t) : 0.0;
     if (ted4_candidate_make(s->t, m, to) != 0 || measure(s, &s->untrained[m].cost) != 0)
         return -1;
+    s->untrained[m].base = s->now_cost;
     s->untrained[m].to = to;
     return 0;
 }
@@ -181,19 +183,19 @@ static int train(search *s, ted4_snapshot *after, ted4_cost *cost, int *lost)
     return ted4_state_take(s->t, after) != 0 || measure(s, cost) != 0;
 }
 
-/* Returns the most promising candidate, or TED4_CANDIDATES if none is worth training. */
+/* Returns the most promising candidate, or TED4_CANDIDATES if none is worth training. The current
+ * model has changed since candidates were looked at, so that costs are compared as ratios. */
 static ted4_candidate choose(const search *s)
 {
-    const ted4_cost *now = &s->now_cost;
     ted4_candidate best = TED4_CANDIDATES;
-    double least = (1.0 - LEAST_GAIN) * now->cost;
+    double least = 1.0 - LEAST_GAIN;
 
     for (int m = 0; m < TED4_CANDIDATES; m++) {
-        const ted4_cost *c = &s->untrained[m].cost;
-        const double hoped = c->cost - HOPE * fmax(c->distortion - now->distortion, 0.0);
+        const ted4_cost *c = &s->untrained[m].cost, *base = &s->untrained[m].base;
+        const double hoped = c->cost - HOPE * fmax(c->distortion - base->distortion, 0.0);
 
-        if (s->untrained[m].to >= 0 && hoped < least) {
-            least = hoped;
+        if (s->untrained[m].to >= 0 && hoped < least * base->cost) {
+            least = hoped / base->cost;
             best = (ted4_candidate)m;
         }
     }
