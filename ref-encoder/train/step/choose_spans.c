@@ -112,7 +112,8 @@ static size_t count_before(double t, size_t n)
     return (size_t)fmin(fmax(ceil(t * (double)(n - 1)), t > 0), (double)n);
 }
 
-/* The times beyond an edge of either span; no further ones, where both activations are nearly 0. */
+/* The times beyond an edge of either span; no further ones, where both activations are nearly 0.
+ * inner, outer: distances in the direction of the edge, which is backwards for the start. */
 static time_range find_range(const ted4_span *a, const ted4_span *b, int edge, size_t n)
 {
     const double side = edge == START ? -1 : 1;
@@ -121,14 +122,11 @@ static time_range find_range(const ted4_span *a, const ted4_span *b, int edge, s
     const double inner = fmin(side * at[0], side * at[1]);
     const double outer = fmax(side * at[0] + FAR * width[0], side * at[1] + FAR * width[1]);
     const double apart = fmin(fmin(width[0], width[1]) / FINE, 1.0 / ENOUGH);
-    const size_t each = (size_t)(apart * (double)(n - 1));
-    time_range r = { count_before(inner, n), count_before(outer, n), each > 1 ? each : 1 };
+    const size_t each = (size_t)fmax(apart * (double)(n - 1), 1);
 
-    if (edge == START) {
-        r.first = count_before(-outer, n);
-        r.last = count_before(-inner, n);
-    }
-    return r;
+    if (edge == START)
+        return (time_range) { count_before(-outer, n), count_before(-inner, n), each };
+    return (time_range) { count_before(inner, n), count_before(outer, n), each };
 }
 
 /* The search for one symbol. */
