@@ -20,9 +20,9 @@ enum { FRAMES = 9, LONG = 1501, TIMES = 2 * LONG - 1, SPANS = 300, LONG_SPANS = 
 #define WORTH                   1e-5 /* as choose_spans.h has it: a mean squared change per bit */
 
 /* Symbols with a step of 1/16: a_s and a_f from -2 to 3, widths from 2^-6 to 2^2. */
-static ted4_span random_span(uint64_t seed)
+static ted4_coded_span random_span(uint64_t seed)
 {
-    ted4_span s = { .step = 0.0625f };
+    ted4_coded_span s = { .step = 0.0625f };
 
     for (int i = 0; i < TED4_SPAN_PARTS; i++) {
         const uint64_t r = ted4_mix(seed * 8 + (uint64_t)i);
@@ -37,7 +37,7 @@ static ted4_span random_span(uint64_t seed)
     return s;
 }
 
-static double activation(const ted4_span *s, double t)
+static double activation(const ted4_coded_span *s, double t)
 {
     const double q = (double)s->step, start = s->k[0] * q, end = s->k[2] * q;
     const double b = fmax(exp2(s->k[t < start ? 1 : 3] * q), 0x1p-12);
@@ -46,7 +46,7 @@ static double activation(const ted4_span *s, double t)
     return exp(-u * u);
 }
 
-static double change(const ted4_span *a, const ted4_span *b, int frames)
+static double change(const ted4_coded_span *a, const ted4_coded_span *b, int frames)
 {
     const int n = 2 * frames - 1;
     double sum = 0;
@@ -59,7 +59,7 @@ static double change(const ted4_span *a, const ted4_span *b, int frames)
     return sum;
 }
 
-static double measured_change(const ted4_span *a, const ted4_span *b, int frames)
+static double measured_change(const ted4_coded_span *a, const ted4_coded_span *b, int frames)
 {
     const size_t n = ted4_span_n_times((uint32_t)frames);
     static float time[TIMES], activation[2][TIMES];
@@ -74,12 +74,12 @@ static double measured_change(const ted4_span *a, const ted4_span *b, int frames
     return sum / (double)n;
 }
 
-static double cost(const ted4_span *s, const ted4_span *given, int frames)
+static double cost(const ted4_coded_span *s, const ted4_coded_span *given, int frames)
 {
     return measured_change(s, given, frames) + WORTH * ted4_span_bits(s);
 }
 
-static void choose(ted4_span *s, int frames)
+static void choose(ted4_coded_span *s, int frames)
 {
     ted4_span_choose(s, ted4_span_n_times((uint32_t)frames));
 }
@@ -89,7 +89,7 @@ static void test_change(void **state)
     (void)state;
     for (uint64_t i = 0; i < SPANS; i++)
         for (int frames = 1; frames <= FRAMES; frames += 4) {
-            const ted4_span a = random_span(i), b = random_span(i + SPANS);
+            const ted4_coded_span a = random_span(i), b = random_span(i + SPANS);
 
             assert_near(measured_change(&a, &b, frames), change(&a, &b, frames), 1e-5);
         }
@@ -98,14 +98,14 @@ static void test_change(void **state)
 /* Edges before the first frame and after the last: whatever they are, activation is 1. */
 static void test_out_of_sight(void **state)
 {
-    const ted4_span always = {
+    const ted4_coded_span always = {
         .step = 0.0625f,
         .mu = { -5 * 256, 7 * 256, 20 * 256 + 100, -9 * 256 - 100 },
         .sigma = { 90, 90, 90, 90 },
         .k = { -30, 50, 70, -60 },
     };
     const int want[TED4_SPAN_PARTS] = { -5, 7, 20, -9 };
-    ted4_span s = always;
+    ted4_coded_span s = always;
 
     (void)state;
     choose(&s, FRAMES);
@@ -128,8 +128,8 @@ static void test_never_worse(void **state)
 
     (void)state;
     for (uint64_t i = 0; i < SPANS; i++) {
-        const ted4_span given = random_span(i);
-        ted4_span s = given;
+        const ted4_coded_span given = random_span(i);
+        ted4_coded_span s = given;
 
         choose(&s, FRAMES);
         assert_true(cost(&s, &given, FRAMES) <= cost(&given, &given, FRAMES));
@@ -149,10 +149,10 @@ static void test_never_worse(void **state)
  * own and its mean: the search does not end too soon, and leaves out no time that matters. It
  * relies on bits that only become fewer on the way to the mean, which is wrong by a bit where
  * escapes begin and frequencies are rounded. */
-static void check_cheapest(ted4_span given, int part, int frames)
+static void check_cheapest(ted4_coded_span given, int part, int frames)
 {
     const int mean = ted4_round_shift(given.mu[part], TED4_MU_BITS);
-    ted4_span s, any;
+    ted4_coded_span s, any;
     double least = INFINITY;
 
     for (int other = 0; other < TED4_SPAN_PARTS; other++)
@@ -231,10 +231,10 @@ static void test_exported(void **state)
     assert_true(bits[1][0] < 0.95 * bits[0][0]);
 }
 
-static ted4_span file_span(const ted4_scene *s, size_t i)
+static ted4_coded_span file_span(const ted4_scene *s, size_t i)
 {
-    ted4_span span = { .step = s->head.step[TED4_TAU] *
-                               ted4_bits_float(ted4_step[s->step_index[TED4_TAU][i]]) };
+    ted4_coded_span span = { .step = s->head.step[TED4_TAU] *
+                                     ted4_bits_float(ted4_step[s->step_index[TED4_TAU][i]]) };
 
     for (int c = 0; c < TED4_SPAN_PARTS; c++)
         span.k[c] = s->symbol[TED4_TAU][(size_t)c * s->head.n_anchors + i];
@@ -254,7 +254,7 @@ static void test_crossed(void **state)
     (void)state;
     assert_true(nearest->head.n_anchors == chosen->head.n_anchors && nearest->head.n_anchors > 0);
     for (size_t i = 0; i < nearest->head.n_anchors; i++) {
-        const ted4_span a = file_span(nearest, i), b = file_span(chosen, i);
+        const ted4_coded_span a = file_span(nearest, i), b = file_span(chosen, i);
 
         assert_int_equal(a.k[0], a.k[2]);
         moved += a.k[0] != b.k[0];

@@ -34,7 +34,7 @@ static void add_slots(void *bits, ted4_slots s)
     *(double *)bits += TED4_SLOT_BITS - ted4_math_log2(s.freq);
 }
 
-static double part_bits(const ted4_span *s, int part)
+static double part_bits(const ted4_coded_span *s, int part)
 {
     double bits = 0;
 
@@ -42,7 +42,7 @@ static double part_bits(const ted4_span *s, int part)
     return bits;
 }
 
-double ted4_span_bits(const ted4_span *s)
+double ted4_span_bits(const ted4_coded_span *s)
 {
     double bits = 0;
 
@@ -51,7 +51,7 @@ double ted4_span_bits(const ted4_span *s)
     return bits;
 }
 
-static float part_value(const ted4_span *s, int part)
+static float part_value(const ted4_coded_span *s, int part)
 {
     return (float)s->k[part] * s->step;
 }
@@ -69,7 +69,7 @@ static void beyond_edge(const float *time, const float *tau, float at, size_t fi
         activation[i] = ted4_activation((time[i] - at) / width, ted4_pow2);
 }
 
-void ted4_span_activation(const ted4_span *s, const float *time, size_t n, float *activation)
+void ted4_span_activation(const ted4_coded_span *s, const float *time, size_t n, float *activation)
 {
     float tau[TED4_SPAN_PARTS * TED4_LANES];
     size_t first = 0, last = n; /* times within the span */
@@ -101,7 +101,7 @@ typedef struct {
 #define FAR 4.0
 enum { FINE = 16, ENOUGH = 512 };
 
-static double width_of(const ted4_span *s, int edge)
+static double width_of(const ted4_coded_span *s, int edge)
 {
     return (double)fmaxf(ted4_pow2(part_value(s, edge + 1)), TED4_EDGE_MIN);
 }
@@ -114,7 +114,7 @@ static size_t count_before(double t, size_t n)
 
 /* The times beyond an edge of either span; no further ones, where both activations are nearly 0.
  * inner, outer: distances in the direction of the edge, which is backwards for the start. */
-static time_range find_range(const ted4_span *a, const ted4_span *b, int edge, size_t n)
+static time_range find_range(const ted4_coded_span *a, const ted4_coded_span *b, int edge, size_t n)
 {
     const double side = edge == START ? -1 : 1;
     const double at[2] = { (double)part_value(a, edge), (double)part_value(b, edge) };
@@ -131,8 +131,8 @@ static time_range find_range(const ted4_span *a, const ted4_span *b, int edge, s
 
 /* The search for one symbol. */
 typedef struct {
-    ted4_span *s;
-    ted4_span given;
+    ted4_coded_span *s;
+    ted4_coded_span given;
     int part;
     size_t n; /* number of times */
     int best;
@@ -211,7 +211,7 @@ static void search_between(search *f, candidate near, candidate far)
 /* Moves one symbol towards its mean; true if it has changed. */
 static int choose_part(search *f, int part)
 {
-    ted4_span *s = f->s;
+    ted4_coded_span *s = f->s;
     const int given = s->k[part];
     int mean = ted4_clamp(ted4_round_shift(s->mu[part], TED4_MU_BITS), -MOST, MOST);
 
@@ -232,7 +232,7 @@ static int choose_part(search *f, int part)
     return f->best != given;
 }
 
-void ted4_span_choose(ted4_span *s, size_t n)
+void ted4_span_choose(ted4_coded_span *s, size_t n)
 {
     search f = { .s = s, .given = *s, .n = n };
     int changed = 1;
@@ -276,12 +276,13 @@ static int nearest_symbol(float value, float step)
 
 /* Returns the span of an anchor as it would be rounded. out: the outputs of the hyperprior for it,
  * TED4_PRIOR_BLOCK apart. */
-static ted4_span rounded_span(ted4_trainer *t, size_t anchor, const int32_t *out)
+static ted4_coded_span rounded_span(ted4_trainer *t, size_t anchor, const int32_t *out)
 {
     const ted4_shape *shape = &t->layout.shape;
     const int32_t *model = out + (size_t)shape->first_output[TED4_TAU] * TED4_PRIOR_BLOCK;
     const uint8_t index = ted4_step_index(out[step_row(shape) * TED4_PRIOR_BLOCK]);
-    ted4_span s = { .step = t->layout.head.step[TED4_TAU] * ted4_bits_float(ted4_step[index]) };
+    ted4_coded_span s = { .step = t->layout.head.step[TED4_TAU] *
+                                  ted4_bits_float(ted4_step[index]) };
 
     for (int i = 0; i < TED4_SPAN_PARTS; i++) {
         s.k[i] = nearest_symbol(*tau_value(t, anchor, i), s.step);
@@ -308,7 +309,7 @@ static void choose_block(void *arg, size_t i)
                 *ted4_anchor_value(&t->anchors, TED4_ROW_POSITION, first + j, axis));
     ted4_prior_hyper(&c->prior, position[0], n, out);
     for (size_t j = 0; j < n; j++) {
-        ted4_span chosen = rounded_span(t, first + j, out + j);
+        ted4_coded_span chosen = rounded_span(t, first + j, out + j);
 
         ted4_span_choose(&chosen, ted4_span_n_times(t->data->n_frames));
         for (int part = 0; part < TED4_SPAN_PARTS; part++) {
