@@ -10,7 +10,8 @@ set -u
 . tests/support/speak.sh
 need sanitized ted4enc
 grep -q __asan_init "$TED4_BUILD/ted4enc" && { skip sanitized "all is sanitized"; exit 0; }
-flags='-fsanitize=address,undefined -fno-sanitize-recover=all'
+# clang warns of loops that it does not vectorise, and it vectorises none whose accesses it checks.
+flags='-fsanitize=address,undefined -fno-sanitize-recover=all -Wno-pass-failed'
 build=$TED4_BUILD/sanitized
 unset ASAN_OPTIONS UBSAN_OPTIONS
 
