@@ -3,7 +3,7 @@
 
 
 class Refusal(Exception):
-    """The one error that is reported: an identifier of 14.1 and a byte offset (None for limits)."""
+    """The one error that is reported: an identifier of 14.3 and a byte offset (None for limits)."""
 
     def __init__(self, error, offset=None):
         super().__init__(error, offset)
