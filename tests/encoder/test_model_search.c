@@ -211,6 +211,50 @@ static void test_refined(void **state)
     ted4_trainer_finish(&t);
 }
 
+/* Returns the first trial of motion without training; asserts that there is one. *late: whether the
+ * bits of weights were tried before it. */
+static const struct ted4_trial *trial_of_motion(const ted4_trainer *t, int *late)
+{
+    *late = 0;
+    for (size_t i = 0; i < t->search.n_trials; i++) {
+        const struct ted4_trial *x = &t->search.trial[i];
+
+        if (x->candidate == TED4_CANDIDATE_MOTION && x->steps == 0)
+            return x;
+        *late |= is_of_bits(x);
+    }
+    fail_msg("no trial of motion");
+    return NULL;
+}
+
+/* Weights of a bit from one at which motion goes even for a third of its bytes to one at which it
+ * stays. In between it is decided once its weights are coarse. */
+static void test_motion_last(void **state)
+{
+    int n_late = 0;
+
+    (void)state;
+    for (double lambda = 0.05; lambda > 0.005; lambda /= 1.4) {
+        ted4_train_options o = options("capacity=1");
+        ted4_trainer t;
+        int late;
+
+        o.lambda = lambda;
+        begin(&t, &o, NULL);
+        ball_train(&t, ted4_model_search_due_step(&t) + 1);
+
+        const struct ted4_trial *x = trial_of_motion(&t, &late);
+        const double added = x->after.distortion - x->before.distortion;
+        const double saved = added + x->before.cost - x->after.cost;
+
+        if (!late && x->taken)
+            assert_true(saved / 3 >= added);
+        n_late += late;
+        ted4_trainer_finish(&t);
+    }
+    assert_in_range(n_late, 1, 6);
+}
+
 /* A budget for only a few trials is not spent on the most expensive ones. */
 static void test_cheap_first(void **state)
 {
@@ -482,7 +526,8 @@ int main(void)
         cmocka_unit_test(test_budget),      cmocka_unit_test(test_coarse),
         cmocka_unit_test(test_threads),     cmocka_unit_test(test_resumed),
         cmocka_unit_test(test_not_mixed),   cmocka_unit_test(test_fixed),
-        cmocka_unit_test(test_short),       cmocka_unit_test(test_lambda),
+        cmocka_unit_test(test_short),       cmocka_unit_test(test_motion_last),
+        cmocka_unit_test(test_lambda),
     };
 
     return cmocka_run_group_tests(tests, set_up, tear_down);

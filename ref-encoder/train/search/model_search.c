@@ -28,6 +28,9 @@ enum { TRIALS = 16, FEWEST_STEPS = 50 };
  * expected to recover. LEAST_GAIN: a candidate that would not lower the cost by this share, even
  * so, is not worth training. */
 #define HOPE       0.8
+/* COARSE: the share of their bytes that weights keep on the grids of later trials: of 24 bits, most
+ * keep 6 to 8. */
+#define COARSE     (1.0 / 3.0)
 #define LEAST_GAIN 5e-4
 
 typedef struct {
@@ -44,6 +47,7 @@ typedef struct {
     } untrained[TED4_CANDIDATES]; /* the next trial of each candidate, with its untrained cost, and
                                      that of the model it was applied to; to is -1 if there is
                                      none */
+    int waits[TED4_CANDIDATES];   /* 1: decided after the others */
 } search;
 
 double ted4_model_search_steps(const ted4_trainer *t)
@@ -145,18 +149,36 @@ static int may_be_bold(ted4_candidate m)
            m != TED4_CANDIDATE_MOTION_BITS;
 }
 
+/* Whether the candidate of the last look has to wait. While all weights have all their bits, motion
+ * and activation cost more than they will: whether one of them goes is decided at once if that is
+ * clear even so, otherwise after all other candidates. */
+static int has_to_wait(const search *s, ted4_candidate m)
+{
+    const ted4_cost *with = &s->now_cost, *without = &s->untrained[m].cost;
+    const double added = without->distortion - with->distortion;
+    const double saved = added + with->cost - without->cost;
+
+    return (m == TED4_CANDIDATE_MOTION || m == TED4_CANDIDATE_ACTIVATION) && !s->waits[m] &&
+           saved > added && COARSE * saved < added;
+}
+
 /* Applies a candidate repeatedly, in bold steps and then in small ones, while each step lowers the
  * untrained cost. */
 static int descend(search *s, ted4_candidate m)
 {
     int bold = may_be_bold(m);
 
-    while (s->spent < SIGHT_SHARE * s->budget) {
+    while (s->waits[m] || s->spent < SIGHT_SHARE * s->budget) {
         const int bolder = ted4_candidate_next(s->t, m, 1), next = ted4_candidate_next(s->t, m, 0);
 
         bold = bold && bolder != next;
 
         const int seen = look(s, m, bold);
+
+        if (seen == 0 && has_to_wait(s, m)) {
+            s->waits[m] = 1;
+            return 0;
+        }
         const int taken = seen == 0 ? take_if_cheaper(s, m) : seen;
 
         if (taken < 0)
@@ -244,6 +266,9 @@ static int search_all(search *s)
         s->untrained[m].to = -1;
     for (int m = 0; !bad && m < TED4_CANDIDATES; m++)
         bad = ted4_state_restore(s->t, &s->now) != 0 || descend(s, (ted4_candidate)m) != 0;
+    for (int m = 0; !bad && m < TED4_CANDIDATES; m++)
+        bad = s->waits[m] &&
+              (ted4_state_restore(s->t, &s->now) != 0 || descend(s, (ted4_candidate)m) != 0);
     bad = bad || ted4_state_restore(s->t, &s->now) != 0 ||
           train(s, &s->trained, &s->trained_cost, &lost) != 0;
     if (!bad && lost)
