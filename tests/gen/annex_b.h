@@ -338,11 +338,34 @@ static inline void annex_b_values(FILE *out, const struct scene *s)
         }
 }
 
+/* The records of one file at n_times times, and all its tiers. */
+static inline void annex_b_results(FILE *out, int section, spec_tiers *t, int n_times)
+{
+    static const float camera[3] = { 0.0f, 0.0f, -2.0f };
+    const uint32_t den = n_times > 1 ? (uint32_t)n_times - 1 : 1;
+
+    fprintf(out, "\n### B.%d.4 Records\n", section);
+    for (int i = 0; i < n_times; i++)
+        annex_b_query(out, &t->model, (uint32_t)i, den, camera);
+    fprintf(out, "\n### B.%d.5 Tiers\n\n| tier | bytes | XXH3-128 | SHA-256 |\n|---|---|---|---|\n",
+            section);
+    for (int i = 0; i < N_TIERS; i++)
+        annex_b_hashes(out, (const char *[]) { "T0", "T1", "T2", "T3", "T4" }[i], &t->tier[i]);
+    for (int i = 0; i < n_times; i++) {
+        spec_bytes t5 = { NULL, 0, 0 };
+        char name[ANNEX_B_NOTE];
+
+        spec_t5(&t5, &t->model, (uint32_t)i, den, camera);
+        snprintf(name, sizeof name, "T5 at %d/%u", i, den);
+        annex_b_hashes(out, name, &t5);
+        free(t5.data);
+    }
+}
+
 /* One file; closes with its tiers. */
 static inline void annex_b_file(FILE *out, int section, const uint8_t *data, size_t size,
                                 int n_times)
 {
-    static const float camera[3] = { 0.0f, 0.0f, -2.0f };
     annex_b_tile b = { .out = out };
     size_t at = 12;
 
@@ -367,23 +390,7 @@ static inline void annex_b_file(FILE *out, int section, const uint8_t *data, siz
     spec_t1(&b.t.tier[1], &b.t.model.p.s);
     fprintf(out, "\n### B.%d.3 Values\n", section);
     annex_b_values(out, &b.t.model.p.s);
-    fprintf(out, "\n### B.%d.4 Records\n", section);
-    for (int i = 0; i < n_times; i++)
-        annex_b_query(out, &b.t.model, (uint32_t)i, n_times > 1 ? (uint32_t)n_times - 1 : 1,
-                      camera);
-    fprintf(out, "\n### B.%d.5 Tiers\n\n| tier | bytes | XXH3-128 | SHA-256 |\n|---|---|---|---|\n",
-            section);
-    for (int i = 0; i < N_TIERS; i++)
-        annex_b_hashes(out, (const char *[]) { "T0", "T1", "T2", "T3", "T4" }[i], &b.t.tier[i]);
-    for (int i = 0; i < n_times; i++) {
-        spec_bytes t5 = { NULL, 0, 0 };
-        char name[ANNEX_B_NOTE];
-
-        spec_t5(&t5, &b.t.model, (uint32_t)i, n_times > 1 ? (uint32_t)n_times - 1 : 1, camera);
-        snprintf(name, sizeof name, "T5 at %d/%d", i, n_times > 1 ? n_times - 1 : 1);
-        annex_b_hashes(out, name, &t5);
-        free(t5.data);
-    }
+    annex_b_results(out, section, &b.t, n_times);
     spec_tiers_free(&b.t);
 }
 

@@ -182,8 +182,9 @@ static inline void annex_b_compact_file(FILE *out, const uint8_t *data, size_t s
     fprintf(out, "\n### B.3.2 Substreams of adaptive bits\n\n"
                  "As in B.2.2. A node is named by the bits of its key, an integer, and its\n"
                  "children are coded in order. No row stands for a child that is certain. The\n"
-                 "contexts of a tree are (s, pattern) of 8.2, those of lengths are (expected\n"
-                 "length, node) of 9.6.\n");
+                 "contexts of a tree are (s, 2^i + m) of 8.2, those of lengths are (expected\n"
+                 "length, node) of 9.6; that of signs, which has no numbers, is printed as\n"
+                 "(0, 0). The rows of NETE and NETR are left out.\n");
     payload = annex_b_payload(data, "POSN", &n);
     annex_b_tree(out, payload, n, 2);
     payload = annex_b_payload(data, "BANK", &n);
@@ -195,9 +196,7 @@ static inline void annex_b_compact_file(FILE *out, const uint8_t *data, size_t s
     spec_t1(&t.tier[1], &t.model.p.s);
     fprintf(out, "\n### B.3.3 Values\n");
     annex_b_values(out, &t.model.p.s);
-    fprintf(out, "\n### B.3.4 Tiers\n\n| tier | bytes | XXH3-128 | SHA-256 |\n|---|---|---|---|\n");
-    for (int i = 0; i < N_TIERS; i++)
-        annex_b_hashes(out, (const char *[]) { "T0", "T1", "T2", "T3", "T4" }[i], &t.tier[i]);
+    annex_b_results(out, 3, &t, 5);
     spec_tiers_free(&t);
 }
 
