@@ -25,12 +25,13 @@
 #define SIGHT_SHARE 0.7
 enum { TRIALS = 16, FEWEST_STEPS = 50 };
 /* HOPE: the largest share of the distortion added by an untrained candidate that training can be
- * expected to recover. LEAST_GAIN: a candidate that would not lower the cost by this share, even
- * so, is not worth training. */
+ * expected to recover. */
 #define HOPE       0.8
 /* COARSE: the share of their bytes that weights keep on the grids of later trials: of 24 bits, most
  * keep 6 to 8. */
 #define COARSE     (1.0 / 3.0)
+/* LEAST_GAIN: a candidate that would not lower the cost by this share, even if training recovers as
+ * much as can be expected, is not worth training. */
 #define LEAST_GAIN 5e-4
 
 typedef struct {
