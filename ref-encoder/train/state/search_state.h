@@ -19,8 +19,9 @@ typedef struct {
     double bytes;
 } ted4_cost;
 
-/* What can be reduced, in the order of trials. The choice of the Gaussians that anchors lose takes
- * a pass over many pictures, so it comes last. */
+/* What can be reduced, in the order of trials, but that motion and activation may have to wait
+ * (model_search.c). The choice of the Gaussians that anchors lose takes a pass over many pictures,
+ * so it comes last. */
 typedef enum {
     TED4_CANDIDATE_MOTION,
     TED4_CANDIDATE_ACTIVATION,
