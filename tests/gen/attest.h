@@ -9,6 +9,7 @@
 #define XXH_STATIC_LINKING_ONLY
 #include <xxhash.h>
 #include "base/bytes.h"
+#include "norm/adaptive.h"
 #include "norm/gaussian.h"
 #include "norm/half.h"
 #include "norm/sine.h"
@@ -122,12 +123,43 @@ static inline void attest_rne(FILE *out)
     attest_end(&a, "rne_scaled", out);
 }
 
+/* The pattern of the coordinate at every place of every grid. */
+static inline void attest_coordinate(FILE *out)
+{
+    attest_string a;
+
+    attest_begin(&a);
+    for (unsigned g = 6; g <= 16; g++)
+        for (uint32_t place = 0; (g <= 12 || g == 16) && place < 1u << g; place++)
+            attest_put(&a, ted4_grid_half(place, g));
+    attest_end(&a, "coordinate", out);
+}
+
+/* p after each bit, from every p and every number of bits seen. */
+static inline void attest_adaptive(FILE *out)
+{
+    attest_string a;
+
+    attest_begin(&a);
+    for (int seen = 0; seen <= 24; seen++)
+        for (int p = 32; p <= 65504; p++)
+            for (int bit = 0; bit < 2; bit++) {
+                ted4_adaptive m = { (uint16_t)p, (uint8_t)seen };
+
+                ted4_adaptive_update(&m, bit);
+                attest_put(&a, m.p);
+            }
+    attest_end(&a, "adaptive", out);
+}
+
 /* In seconds. */
 static inline void attest_short(FILE *out)
 {
     attest_q24(out);
     attest_sine(out);
     attest_rne(out);
+    attest_coordinate(out);
+    attest_adaptive(out);
     attest_cum(1, 1, "cum", out);
 }
 
