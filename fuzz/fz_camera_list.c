@@ -24,10 +24,7 @@ static void check_camera(const ted4_listed_camera *c)
 
 static int is_same(const ted4_listed_camera *a, const ted4_listed_camera *b)
 {
-    ted4_view v = a->view;
-
-    v.pixel = b->view.pixel; /* not printed */
-    return memcmp(&v, &b->view, sizeof v) == 0 && a->has_frame == b->has_frame &&
+    return memcmp(&a->view, &b->view, sizeof a->view) == 0 && a->has_frame == b->has_frame &&
            a->frame == b->frame && a->time.num == b->time.num && a->time.den == b->time.den;
 }
 

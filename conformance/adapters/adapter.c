@@ -58,6 +58,10 @@ static int read_file(file *f, const char *path)
         n = f->data != NULL ? fread(f->data + f->size, 1, capacity - f->size, in) : 0;
         f->size += n;
     }
+    if (in != NULL && ferror(in)) {
+        free(f->data);
+        f->data = NULL;
+    }
     if (in != NULL)
         fclose(in);
     if (f->data != NULL)

@@ -20,6 +20,8 @@ if [ "$1" = --ted4-capabilities ]; then
     fewer-tiers) good "$@" |
         sed 's/"tiers":\[[^]]*\],"class":"X"/"tiers":["T0","T3"],"class":null/' ;;
     class-alone) good "$@" | sed 's/,"T5"//' ;;
+    class-unknown) good "$@" | sed 's/"class":"X"/"class":"x"/' ;;
+    without-*) good "$@" | sed "s/\"${way#without-}\":/\"no\":/" ;;
     limit-above-1) good "$@" | sed 's/"max_level":31/"max_level":1/' ;;
     no-knobs) good "$@" | sed 's/"knobs":\["max_alloc_total","max_work"\]/"knobs":[]/' ;;
     *) good "$@" ;;
@@ -27,7 +29,7 @@ if [ "$1" = --ted4-capabilities ]; then
     exit
 fi
 case $way in
-good|declines-*|no-knobs|not-lenient|fewer-tiers|class-alone) good "$@" ;;
+good|declines-*|no-knobs|not-lenient|fewer-tiers|class-*|without-*) good "$@" ;;
 crash) kill -SEGV $$ ;;
 hang) sleep 600 ;;
 hang-behind) sleep 600 & good "$@"; wait ;;

@@ -76,18 +76,43 @@ static const char *text_of(const json_t *o, const char *key)
     return s != NULL ? s : "";
 }
 
+/* Returns the first member that schema/capabilities.schema.json requires and c lacks, or has with
+ * another type; NULL if there is none. */
+static const char *capability_missing(const json_t *c)
+{
+    static const char *const text[] = { "name", "version", "spec" }, *const list[] = {
+        "profiles", "tiers", "declines", "knobs"
+    };
+    const json_t *const class = json_object_get(c, "class");
+
+    for (size_t i = 0; i < sizeof text / sizeof *text; i++)
+        if (!json_is_string(json_object_get(c, text[i])))
+            return text[i];
+    for (size_t i = 0; i < sizeof list / sizeof *list; i++)
+        if (!json_is_array(json_object_get(c, list[i])))
+            return list[i];
+    if (!json_is_integer(json_object_get(c, "max_level")))
+        return "max_level";
+    if (!json_is_boolean(json_object_get(c, "strict")))
+        return "strict";
+    return json_is_null(class) || strcmp(text_of(c, "class"), "X") == 0 ||
+                   strcmp(text_of(c, "class"), "T") == 0
+               ? NULL
+               : "class";
+}
+
 int conf_judge_capabilities(const json_t *c, conf_verdict *v)
 {
+    const char *const missing = capability_missing(c);
+
     if (json_integer_value(json_object_get(c, "protocol")) != 1)
         say(v, CONF_NO_ANSWER, "capabilities: protocol is not 1");
-    else if (text_of(c, "name")[0] == '\0' || !json_is_string(json_object_get(c, "version")))
-        say(v, CONF_NO_ANSWER, "capabilities: name or version is missing");
-    else if (!json_is_array(json_object_get(c, "tiers")) ||
-             json_array_size(json_object_get(c, "tiers")) == 0)
+    else if (missing != NULL)
+        say(v, CONF_NO_ANSWER, "capabilities: %s is missing, or not what it has to be", missing);
+    else if (text_of(c, "name")[0] == '\0')
+        say(v, CONF_NO_ANSWER, "capabilities: the name is empty");
+    else if (json_array_size(json_object_get(c, "tiers")) == 0)
         say(v, CONF_NO_ANSWER, "capabilities: no tiers");
-    else if (!json_is_integer(json_object_get(c, "max_level")) ||
-             !json_is_array(json_object_get(c, "declines")))
-        say(v, CONF_NO_ANSWER, "capabilities: max_level or declines are missing");
     else if (json_is_string(json_object_get(c, "class")) &&
              !holds(json_object_get(c, "tiers"), "T5"))
         say(v, CONF_NO_ANSWER, "capabilities: a class is claimed, but not T5, which shows it");

@@ -21,14 +21,21 @@ typedef struct {
     conf_mutant_list list;
 } campaign;
 
-/* Sets the reason, as text that may stand in a CSV field and in a table. */
+/* Sets the reason, as words that may stand in a CSV field and in a table. */
 static void take_reason(conf_mutant *m, const char *how, const char *text)
 {
     snprintf(m->by, sizeof m->by, "%s%.120s", how, text);
     m->by[strcspn(m->by, "\n")] = '\0';
-    for (char *c = m->by; *c != '\0'; c++)
-        if (*c == ',' || *c == '"' || *c == '|')
-            *c = ' ';
+
+    char *to = m->by;
+
+    for (const char *c = m->by; *c != '\0'; c++) {
+        const char next = strchr(",\"|", *c) != NULL ? ' ' : *c;
+
+        if (next != ' ' || (to > m->by && to[-1] != ' '))
+            *to++ = next;
+    }
+    *to = '\0';
 }
 
 /* survived: the whole suite has passed; killed: something went wrong at a vector. Anything else is

@@ -165,6 +165,8 @@ void ted4_camera_list_print(const ted4_camera_list *l, FILE *f)
         char time[32];
 
         snprintf(time, sizeof time, "%" PRIu32 "/%" PRIu32, c->time.num, c->time.den);
+        if (v->pixel > 0.0f)
+            json_object_set_new(o, "pixel", json_real((double)v->pixel));
         if (c->has_frame)
             json_object_set_new(o, "frame", json_integer(c->frame));
         else if (c->time.den > 0)

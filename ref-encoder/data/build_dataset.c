@@ -310,11 +310,9 @@ static int take_points(ted4_dataset *d, ted4_raw_scene *s, const ted4_dataset_op
 static void choose_background(ted4_dataset *d, const ted4_raw_scene *s,
                               const ted4_dataset_options *o)
 {
-    int alpha = 0;
-
-    for (size_t i = 0; i < s->n_shots && !alpha; i++)
-        alpha = s->shots[i].has_alpha;
-    memset(d->background, alpha && o->white ? 255 : 0, sizeof d->background);
+    for (size_t i = 0; i < s->n_shots && !d->has_alpha; i++)
+        d->has_alpha = s->shots[i].has_alpha;
+    memset(d->background, d->has_alpha && o->white ? 255 : 0, sizeof d->background);
 }
 
 int ted4_build_dataset(ted4_dataset *d, ted4_raw_scene *s, const ted4_dataset_options *o,

@@ -38,6 +38,7 @@ typedef struct ted4_dataset {
     int random_points;
     double rate; /* frames per second; 0: unknown */
     uint8_t background[3];
+    int has_alpha;    /* 1: a picture has transparency, and lies on the background */
     uint64_t content; /* digest of all picture files; 0 before ted4_dataset_verify */
     /* [n_warnings] what was skipped or corrected while loading, one sentence per kind; owned */
     char **warnings;

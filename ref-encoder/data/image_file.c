@@ -140,8 +140,32 @@ static int is_wide_interlaced(const uint8_t *bytes, size_t size)
     return size > INTERLACE && bytes[DEPTH] == 16 && bytes[INTERLACE] != 0;
 }
 
-/* Decodes a PNG. 16-bit files without a stated gamma are taken as sRGB, like all others, and not as
- * linear light. */
+/* Removes the chunks by which libpng would convert colours: pixels are used as they are stored, as
+ * those of JPEG and video are, whatever a program has stated about them. Returns the new size. */
+static size_t drop_colour_tags(uint8_t *bytes, size_t size)
+{
+    static const char *const tags[] = { "gAMA", "cHRM", "iCCP", "sRGB" };
+    size_t from = sizeof png_signature, to = from;
+
+    while (from < size) {
+        const size_t left = size - from;
+        const size_t whole = left >= 12 && be32(bytes + from) <= left - 12
+                                 ? be32(bytes + from) + (size_t)12
+                                 : left; /* libpng says what is wrong with it */
+        int drop = 0;
+
+        for (size_t i = 0; whole >= 12 && i < sizeof tags / sizeof *tags; i++)
+            drop |= memcmp(bytes + from + 4, tags[i], 4) == 0;
+        if (!drop) {
+            memmove(bytes + to, bytes + from, whole);
+            to += whole;
+        }
+        from += whole;
+    }
+    return to;
+}
+
+/* Decodes a PNG. 16-bit files are taken as sRGB, like all others, and not as linear light. */
 static int decode_png(const char *path, const uint8_t *bytes, size_t size, ted4_image *image,
                       ted4_message *m)
 {
@@ -186,13 +210,15 @@ int ted4_image_read(const char *path, ted4_image *image, ted4_message *m)
     memset(image, 0, sizeof *image);
     if (ted4_read_whole(path, &bytes, &size, m) != 0)
         return -1;
+    const uint64_t digest = XXH3_64bits(bytes, size);
+
     if (size >= sizeof png_signature && memcmp(bytes, png_signature, sizeof png_signature) == 0)
-        result = decode_png(path, bytes, size, image, m);
+        result = decode_png(path, bytes, drop_colour_tags(bytes, size), image, m);
     else if (is_jpeg(bytes, size))
         result = ted4_jpeg_decode(path, bytes, size, image, m);
     else
         result = ted4_say(m, "%s: neither PNG nor JPEG", path);
-    image->digest = XXH3_64bits(bytes, size);
+    image->digest = digest;
     free(bytes);
     return result;
 }

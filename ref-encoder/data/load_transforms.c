@@ -242,8 +242,8 @@ static int read_frames(ted4_transforms *t)
     return read_times(t, is_first);
 }
 
-/* nerfstudio's lists of file_paths, for training and held out. The first of lists_test that exists
- * is used. */
+/* nerfstudio's lists of file_paths, for training and held out. The first of lists_test that names a
+ * picture is used, or the first that exists. */
 static const char list_train[] = "train_filenames";
 static const char *const lists_test[] = { "test_filenames", "val_filenames" };
 
@@ -350,9 +350,13 @@ static int split(ted4_transforms *t)
 
     if (t->scene->wanted->n_hold_out > 0)
         return 0;
-    for (size_t i = 0; i < sizeof lists_test / sizeof lists_test[0] && test == NULL; i++)
-        if (json_object_get(t->root, lists_test[i]) != NULL)
+    for (size_t i = sizeof lists_test / sizeof lists_test[0]; i-- > 0;) {
+        const json_t *list = json_object_get(t->root, lists_test[i]);
+        const int is_empty = json_is_array(list) && json_array_size(list) == 0;
+
+        if (list != NULL && (test == NULL || !is_empty))
             test = lists_test[i];
+    }
     if (test != NULL || json_object_get(t->root, list_train) != NULL)
         return split_by_lists(t, test);
     if (t->scene->n_shots > 0)

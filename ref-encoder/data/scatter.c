@@ -271,7 +271,7 @@ int ted4_dataset_scatter(ted4_dataset *d, const ted4_scatter_options *o, const t
     int bad = ted4_shown_read(&s, d, m) != 0;
 
     memset(what, 0, sizeof *what);
-    if (!bad && s.plain)
+    if (!bad && s.plain && !d->has_alpha)
         memcpy(d->background, s.background, sizeof d->background);
 
     const size_t outside = bad ? 0 : drop_outside(d, o);

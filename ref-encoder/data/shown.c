@@ -79,43 +79,86 @@ static int read_all(ted4_shown *s, ted4_message *m)
     return 0;
 }
 
-/* Lists the training pictures of every step-th frame. Stores at most most of them, but returns how
- * many there are, and their total size in *bytes. */
-static size_t choose(const ted4_dataset *d, uint32_t step, size_t *picture, size_t most,
-                     size_t *bytes)
+static size_t bytes_of(const ted4_dataset *d, size_t picture)
+{
+    return 3 * n_pixels(&d->pictures[picture].camera);
+}
+
+static int by_frame(const void *a, const void *b)
+{
+    const uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
+
+    return (x > y) - (x < y);
+}
+
+/* Lists the frames that have training pictures in frame[n_pictures], in order. Returns how many. */
+static size_t list_frames(const ted4_dataset *d, uint32_t *frame)
+{
+    size_t n = 0, kept = 0;
+
+    for (size_t i = 0; i < d->n_pictures; i++)
+        if (!d->pictures[i].is_test)
+            frame[n++] = d->pictures[i].frame;
+    qsort(frame, n, sizeof *frame, by_frame);
+    for (size_t i = 0; i < n; i++)
+        if (kept == 0 || frame[kept - 1] != frame[i])
+            frame[kept++] = frame[i];
+    return kept;
+}
+
+/* Lists the training pictures of every step-th of n_frames frames in picture[n_pictures]. Returns
+ * how many there are, and their total size in *bytes. */
+static size_t choose(const ted4_dataset *d, const uint32_t *frame, size_t n_frames, size_t step,
+                     size_t *picture, size_t *bytes)
 {
     size_t n = 0;
 
     *bytes = 0;
     for (size_t i = 0; i < d->n_pictures; i++) {
-        if (d->pictures[i].is_test || d->pictures[i].frame % step != 0)
+        if (d->pictures[i].is_test)
             continue;
-        *bytes += 3 * n_pixels(&d->pictures[i].camera);
-        if (n < most)
-            picture[n] = i;
-        n++;
+        const uint32_t *const at =
+            bsearch(&d->pictures[i].frame, frame, n_frames, sizeof *frame, by_frame);
+
+        if ((size_t)(at - frame) % step != 0)
+            continue;
+        *bytes += bytes_of(d, i);
+        picture[n++] = i;
     }
     return n;
 }
 
-/* Chooses the smallest frame step within both limits. If a single frame exceeds them, its first
- * pictures are used. */
-static void choose_pictures(ted4_shown *s)
+/* Chooses the smallest step of frames within both limits, or as many evenly spaced pictures of a
+ * single frame as they allow, at least one. Returns 0, or -1 if memory ran out. */
+static int choose_pictures(ted4_shown *s)
 {
-    uint32_t step = 1;
-    size_t bytes;
+    const ted4_dataset *d = s->data;
+    uint32_t *const frame = malloc((d->n_pictures + 1) * sizeof *frame);
+    size_t *const all = malloc((d->n_pictures + 1) * sizeof *all);
+    size_t n = 0, bytes = 0;
 
-    do
-        s->n = choose(s->data, step, s->picture, TED4_SHOWN_MOST, &bytes);
-    while ((s->n > TED4_SHOWN_MOST || bytes > TED4_SHOWN_BYTES) && step++ < s->data->n_frames);
-    s->n = s->n < TED4_SHOWN_MOST ? s->n : TED4_SHOWN_MOST;
-    for (; s->n > 1; s->n--) {
-        bytes = 0;
-        for (size_t k = 0; k < s->n; k++)
-            bytes += 3 * n_pixels(&s->data->pictures[s->picture[k]].camera);
-        if (bytes <= TED4_SHOWN_BYTES)
-            break;
+    if (frame != NULL && all != NULL) {
+        const size_t n_frames = list_frames(d, frame);
+
+        for (size_t step = 1; step == 1 || step <= n_frames; step++) {
+            n = choose(d, frame, n_frames, step, all, &bytes);
+            if (n <= TED4_SHOWN_MOST && bytes <= TED4_SHOWN_BYTES)
+                break;
+        }
+        s->n = n < TED4_SHOWN_MOST ? n : TED4_SHOWN_MOST;
+        for (;; s->n--) {
+            bytes = 0;
+            for (size_t k = 0; k < s->n; k++) {
+                s->picture[k] = all[k * n / s->n];
+                bytes += bytes_of(d, s->picture[k]);
+            }
+            if (s->n <= 1 || bytes <= TED4_SHOWN_BYTES)
+                break;
+        }
     }
+    free(frame);
+    free(all);
+    return frame != NULL && all != NULL ? 0 : -1;
 }
 
 /* Gives the mean colour of the fullest bin. */
@@ -152,8 +195,7 @@ int ted4_shown_read(ted4_shown *s, ted4_dataset *d, ted4_message *m)
 
     memset(s, 0, sizeof *s);
     s->data = d;
-    choose_pictures(s);
-    if (count == NULL || allocate(s) != 0 || read_all(s, m) != 0) {
+    if (count == NULL || choose_pictures(s) != 0 || allocate(s) != 0 || read_all(s, m) != 0) {
         const int no_memory = count == NULL || s->n == 0 || s->bits[s->n - 1] == NULL;
 
         free(count);

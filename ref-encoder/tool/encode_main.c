@@ -448,6 +448,12 @@ static int threads_of(const ted4_request *r, const ted4_exchange *x)
     return share < allowed ? share : allowed;
 }
 
+/* What no ranks share: they end at once, and rank 0 does it alone. */
+static int is_for_one(const ted4_request *r)
+{
+    return r->check || r->transcode != NULL;
+}
+
 /* Parses the command line: rank 0 first, so that what is wrong with it is said once. Returns a
  * TED4_REQUEST_ value. */
 static int parse(ted4_request *r, int argc, char **argv, ted4_exchange *x)
@@ -461,7 +467,7 @@ static int parse(ted4_request *r, int argc, char **argv, ted4_exchange *x)
     r->quiet = 1;
     r->verbose = r->json = 0;
     r->log = NULL;
-    return r->check ? TED4_REQUEST_DONE : parsed;
+    return is_for_one(r) ? TED4_REQUEST_DONE : parsed;
 }
 
 int ted4_encoder_main(int argc, char **argv, ted4_exchange *x)
@@ -475,7 +481,7 @@ int ted4_encoder_main(int argc, char **argv, ted4_exchange *x)
     if (parsed != TED4_REQUEST_GO)
         return parsed == TED4_REQUEST_DONE ? TED4_EXIT_FINE : TED4_EXIT_TOOL;
 
-    const encoder e = { &r, &p, &teller, r.check ? NULL : x, begin };
+    const encoder e = { &r, &p, &teller, is_for_one(&r) ? NULL : x, begin };
 
     ted4_teller_begin(&teller, "ted4enc", r.quiet);
     ted4_stop_on_signals(r.quiet);
@@ -483,7 +489,7 @@ int ted4_encoder_main(int argc, char **argv, ted4_exchange *x)
     int status = check_outputs(&e);
 
     if (status == TED4_EXIT_FINE) {
-        ted4_threads_init(&p, threads_of(&r, x));
+        ted4_threads_init(&p, threads_of(&r, e.exchange));
         status = r.transcode != NULL ? transcode(&e) : work(&e);
         ted4_threads_finish(&p);
     }

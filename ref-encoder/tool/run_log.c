@@ -45,15 +45,14 @@ static int is_regular(int file)
     return fstat(file, &s) == 0 && S_ISREG(s.st_mode);
 }
 
-/* Returns the number of bytes of the lines up to a step and a number of rollbacks, or -1 if a line
- * is not one of ted4enc. A last line without a line end does not count. Sets *cpu to the
- * cpu_seconds of the last counted line that has them. */
-static off_t find_end(FILE *f, uint64_t step, uint64_t rollbacks, double *cpu)
+/* Returns where the lines from byte end on reach a later step or number of rollbacks, or -1 if one
+ * is not of ted4enc. A last line without a line end does not count. Sets *cpu to the cpu_seconds of
+ * the last counted line that has them. */
+static off_t find_end(FILE *f, off_t end, uint64_t step, uint64_t rollbacks, double *cpu)
 {
     char *line = NULL;
     size_t capacity = 0;
     ssize_t n;
-    off_t end = 0;
     unsigned long long at, count;
 
     while (end >= 0 && (n = getline(&line, &capacity, f)) > 0 && line[n - 1] == '\n') {
@@ -76,22 +75,26 @@ static off_t find_end(FILE *f, uint64_t step, uint64_t rollbacks, double *cpu)
     return end;
 }
 
-/* Cuts off all lines beyond the trainer's step and number of rollbacks. Sets *cpu to the
- * cpu_seconds of the last remaining line that has them. Returns 0, or -1 with why filled. */
-static int cut(const char *path, int file, const ted4_trainer *t, double *cpu, char *why,
+/* Cuts off all lines of this trial beyond the trainer's step and number of rollbacks. Sets *cpu to
+ * the cpu_seconds of the last remaining line that has them. Returns 0, or -1 with why filled. */
+static int cut(const ted4_run_log *l, const ted4_trainer *t, double *cpu, char *why,
                size_t why_size)
 {
-    FILE *f = fopen(path, "r");
+    FILE *f = fopen(l->path, "r");
 
-    if (f == NULL)
-        return say(path, strerror(errno), why, why_size);
+    if (f == NULL || fseeko(f, l->trial, SEEK_SET) != 0) {
+        say(l->path, strerror(errno), why, why_size);
+        if (f != NULL)
+            fclose(f);
+        return -1;
+    }
 
-    const off_t end = find_end(f, t->iteration, t->monitor.state.rollbacks, cpu);
+    const off_t end = find_end(f, l->trial, t->iteration, t->monitor.state.rollbacks, cpu);
 
     fclose(f);
     if (end < 0)
-        return say(path, "there, but not a log of ted4enc to go on with", why, why_size);
-    return ftruncate(file, end) == 0 ? 0 : say(path, strerror(errno), why, why_size);
+        return say(l->path, "there, but not a log of ted4enc to go on with", why, why_size);
+    return ftruncate(l->file, end) == 0 ? 0 : say(l->path, strerror(errno), why, why_size);
 }
 
 int ted4_run_log_open(ted4_run_log *l, const char *path, const ted4_trainer *t, int keep,
@@ -109,7 +112,7 @@ int ted4_run_log_open(ted4_run_log *l, const char *path, const ted4_trainer *t, 
     l->file = open(path, O_WRONLY | O_CREAT | O_APPEND | (keep ? 0 : O_TRUNC), 0666);
     if (l->file < 0)
         return say(path, strerror(errno), why, why_size);
-    if (keep && is_regular(l->file) && cut(path, l->file, t, &l->cpu_seconds, why, why_size) != 0) {
+    if (keep && is_regular(l->file) && cut(l, t, &l->cpu_seconds, why, why_size) != 0) {
         close(l->file);
         l->file = -1;
         return -1;
@@ -123,7 +126,7 @@ int ted4_run_log_cut(ted4_run_log *l, const ted4_trainer *t, char *why, size_t w
     double said; /* not used: the time of the removed lines was training, and stays counted */
 
     ted4_run_log_rewind(l, t);
-    return is_regular(l->file) ? cut(l->path, l->file, t, &said, why, why_size) : 0;
+    return is_regular(l->file) ? cut(l, t, &said, why, why_size) : 0;
 }
 
 void ted4_run_log_skip(ted4_run_log *l)
@@ -146,6 +149,13 @@ void ted4_run_log_rewind(ted4_run_log *l, const ted4_trainer *t)
     l->last_step = t->iteration;
     l->last_seconds = t->seconds;
     l->last_cpu = l->cpu_seconds;
+}
+
+void ted4_run_log_begin_trial(ted4_run_log *l, const ted4_trainer *t)
+{
+    ted4_run_log_rewind(l, t);
+    if (is_regular(l->file))
+        l->trial = lseek(l->file, 0, SEEK_END);
 }
 
 /* Numbers of a line that are not members of the trainer. */

@@ -3,13 +3,16 @@
 #ifndef TED4_RUN_LOG_H
 #define TED4_RUN_LOG_H
 
+#include <sys/types.h>
+
 #include "preview.h"
 #include "teller.h"
 #include "train/state/trainer.h"
 
 typedef struct {
-    const char *path;    /* borrowed; NULL: no log file */
-    int file;            /* descriptor, -1: no log file */
+    const char *path; /* borrowed; NULL: no log file */
+    int file;         /* descriptor, -1: no log file */
+    off_t trial;      /* where the lines of this trial of --target-size begin; 0: there is none */
     ted4_teller *teller; /* borrowed; is told about trials. NULL: not used */
     double wall, cpu;    /* wall clock and CPU clock at the last tick, seconds */
     double cpu_seconds;  /* CPU time of all threads during training, since the log began */
@@ -38,8 +41,10 @@ void ted4_run_log_skip(ted4_run_log *l);
 /* Tells the log that the trainer was moved to another step: the ms of the next line count from
  * there. */
 void ted4_run_log_rewind(ted4_run_log *l, const ted4_trainer *t);
-/* Like ted4_run_log_rewind, and also cuts lines of later steps or rollbacks off the file. Returns
- * 0, or -1 with why filled; a file that is not a log is left unchanged. */
+/* Like ted4_run_log_rewind; the lines so far belong to earlier trials, and stay. */
+void ted4_run_log_begin_trial(ted4_run_log *l, const ted4_trainer *t);
+/* Like ted4_run_log_rewind, and also cuts this trial's lines of later steps or rollbacks off the
+ * file. Returns 0, or -1 with why filled; a file that is not a log is left unchanged. */
 int ted4_run_log_cut(ted4_run_log *l, const ted4_trainer *t, char *why, size_t why_size);
 
 /* Writes one line about the current step. Call it right after a tick or skip. Numbers that are not

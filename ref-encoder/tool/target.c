@@ -55,7 +55,7 @@ static int one_trial(ted4_training *t, const ted4_snapshot *start, double lambda
         return -1;
     }
     t->again += end - t->trainer->iteration;
-    ted4_run_log_rewind(&t->log, t->trainer);
+    ted4_run_log_begin_trial(&t->log, t->trainer);
     ted4_training_rewound(t);
     if (ted4_training_go(t, 2) != 0 || ted4_training_code(t, c) != 0)
         return -1;
@@ -72,6 +72,20 @@ static int is_better(const ted4_coded *a, const ted4_coded *b, size_t target)
     return a->size <= target ? a->size > b->size : a->size < b->size;
 }
 
+/* A trial has failed. Returns 0, after a warning, if an earlier one has found a file that fits, and
+ * otherwise -1. A signal is obeyed, and one process of several does not know what the others do. */
+static int give_up(const ted4_training *t, const ted4_coded *best)
+{
+    const ted4_exchange *x = t->trainer->exchange;
+
+    if (best->bytes == NULL || best->size > t->request->target_size || t->stopped != 0 ||
+        (x != NULL && x->n > 1))
+        return -1;
+    ted4_teller_error(t->teller, "warning: %s; the file of lambda %.5g is kept", t->why,
+                      best->lambda);
+    return 0;
+}
+
 static int search(ted4_training *t, const ted4_snapshot *start, ted4_coded *best)
 {
     const size_t target = t->request->target_size;
@@ -83,7 +97,7 @@ static int search(ted4_training *t, const ted4_snapshot *start, ted4_coded *best
 
         lambda = fmin(fmax(lambda, LEAST_LAMBDA), MOST_LAMBDA);
         if (one_trial(t, start, lambda, &c) != 0)
-            return -1;
+            return give_up(t, best);
 
         const int fits = c.size <= target;
         const double size = (double)c.size;

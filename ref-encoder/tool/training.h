@@ -56,8 +56,8 @@ void ted4_coded_free(ted4_coded *c);
 
 /* Repeats stage 2 with different values of lambda, in search of the largest file that does not
  * exceed request->target_size. *c is that file, or the smallest one if all exceed it. The search is
- * the same for the same scene, options and seed. Returns 0, or -1 with t->why filled. See target.c.
- */
+ * the same for the same scene, options and seed; it ends early, with a warning, if a trial fails
+ * after another has found a file that fits. Returns 0, or -1 with t->why filled. See target.c. */
 int ted4_training_target(ted4_training *t, ted4_coded *c);
 
 /* ---- shared by training.c, target.c and look.c ---- */

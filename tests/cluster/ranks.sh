@@ -147,6 +147,19 @@ else
     fail still_scene "not the same file: $(cat "$out/said")"
 fi
 
+# One rank writes a file in the other profile, without -f, and warns of the order of anchors.
+"$TED4_BUILD/ted4enc" --transcode "$out/whole.ted4" --profile main -o "$out/one.ted4" -q \
+    2>/dev/null
+$launch -n 3 "$TED4_BUILD/ted4enc-mpi" --transcode "$out/whole.ted4" --profile main \
+    -o "$out/main.ted4" -q >"$out/said" 2>&1
+status=$?
+if [ $status -eq 0 ] && [ "$(grep -c '^ted4enc:' "$out/said")" = 1 ] &&
+    cmp -s "$out/one.ted4" "$out/main.ted4"; then
+    ok transcode
+else
+    fail transcode "status $status: $(cat "$out/said")"
+fi
+
 # An error that all ranks find is reported once.
 $launch -n 3 "$TED4_BUILD/ted4enc-mpi" "$out/broken" $how -o "$out/a.ted4" -q >"$out/said" 2>&1
 status=$?

@@ -16,6 +16,8 @@
 #include "render/png_file.h"
 #include "tiny_scene.h"
 
+static png_fixed_point stated_gamma; /* of write_png; 0: none */
+
 /* Writes a PNG of any colour type (plus 8: the first palette entry is transparent) and depth; rows
  * are packed as in the file. */
 static void write_png(const char *path, int w, int h, int depth, int type, const uint8_t *rows,
@@ -31,6 +33,8 @@ static void write_png(const char *path, int w, int h, int depth, int type, const
     png_init_io(p, f);
     png_set_IHDR(p, info, (png_uint_32)w, (png_uint_32)h, depth, type & 7, PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    if (stated_gamma > 0)
+        png_set_gAMA_fixed(p, info, stated_gamma);
     if ((type & 7) == PNG_COLOR_TYPE_PALETTE)
         png_set_PLTE(p, info, palette, 3);
     if ((type & 8) != 0)
@@ -112,6 +116,27 @@ static void test_png_write(void **state)
     remove(tiny_path(&f, "folder"));
     remove(tiny_path(&f, "out.png"));
     assert_int_equal(rmdir(f.path), 0);
+}
+
+/* Pixels are those that are stored, whatever gamma the file states: linear light, or what ffmpeg
+ * writes for video tagged as BT.709 and as BT.470 BG. */
+static void test_png_gamma(void **state)
+{
+    static const png_fixed_point gamma[] = { 100000, 50994, 35714, 45455, 0 };
+    const uint8_t rgb[6] = { 123, 62, 28, 128, 64, 0 };
+    const uint8_t rgb16[12] = { 123, 123, 62, 62, 28, 28, 128, 128, 64, 64, 0, 0 };
+    tiny_folder f = tiny_new();
+    const char *path = tiny_path(&f, "a.png");
+
+    (void)state;
+    for (size_t i = 0; i < sizeof gamma / sizeof *gamma; i++) {
+        stated_gamma = gamma[i];
+        write_png(path, 2, 1, 8, PNG_COLOR_TYPE_RGB, rgb, sizeof rgb);
+        expect_image(path, 2, 1, 3, rgb);
+        write_png(path, 2, 1, 16, PNG_COLOR_TYPE_RGB, rgb16, sizeof rgb16);
+        expect_image(path, 2, 1, 3, rgb);
+    }
+    tiny_free(&f);
 }
 
 /* A chunk before the data that is longer than PNG permits. */
@@ -540,6 +565,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_png),
         cmocka_unit_test(test_png_write),
+        cmocka_unit_test(test_png_gamma),
         cmocka_unit_test(test_png_chunk_length),
         cmocka_unit_test(test_jpeg),
         cmocka_unit_test(test_undistort),

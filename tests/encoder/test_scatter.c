@@ -105,6 +105,95 @@ static void test_shown(void **state)
     ted4_shown_free(&s);
 }
 
+/* Loads a scene of n training pictures from places along a line, picture i of the time
+ * step i + 1, and two held-out ones of the times 0 and step n. */
+static void load_row(ted4_dataset *d, tiny_folder *f, int n, int step)
+{
+    const ted4_dataset_options o = tiny_options;
+    tiny_string train = { "", 0 }, test = { "", 0 };
+    char name[32];
+    ted4_message m;
+
+    *f = tiny_new();
+    tiny_add(&train, "{\"camera_angle_x\": 0.9, \"frames\": [");
+    tiny_add(&test, "{\"camera_angle_x\": 0.9, \"frames\": [");
+    for (int i = 0; i < n + 2; i++) {
+        const double time = i < n ? step > 0 ? step * i + 1 : 0 : (i - n) * step * n;
+
+        snprintf(name, sizeof name, "%d.png", i);
+        tiny_picture(f, name, 8, 6, i);
+        snprintf(name, sizeof name, "%d", i);
+        tiny_frame(i < n ? &train : &test, i == 0 || i == n, name, time / 1000, i, 5);
+    }
+    tiny_add(&train, "]}");
+    tiny_add(&test, "]}");
+    tiny_text(f, "transforms_train.json", train.text);
+    tiny_text(f, "transforms_test.json", test.text);
+    assert_string_equal(tiny_load(d, f, &o), "");
+    assert_int_equal(ted4_dataset_verify(d, NULL, &m), 0);
+}
+
+/* Of many pictures, those of evenly spaced frames are looked at, among the frames that have
+ * training pictures; of many pictures of one frame, evenly spaced ones. */
+static void test_many_pictures(void **state)
+{
+    enum { PICTURES = 140 };
+    static const int step[] = { 2, 0 };
+    static const size_t want[] = { PICTURES / 2, TED4_SHOWN_MOST };
+    tiny_folder f;
+    ted4_dataset d;
+    ted4_message m;
+    ted4_shown s;
+
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        load_row(&d, &f, PICTURES, step[i]);
+        assert_int_equal(ted4_shown_read(&s, &d, &m), 0);
+        assert_int_equal(s.n, want[i]);
+        assert_int_equal(s.picture[0], 0);
+        assert_true(s.picture[s.n - 1] >= PICTURES - 2);
+        for (size_t k = 1; k < s.n; k++) {
+            assert_true(s.picture[k] > s.picture[k - 1]);
+            assert_true(s.picture[k] <= s.picture[k - 1] + 2);
+        }
+        ted4_shown_free(&s);
+        unload(&d, &f);
+    }
+}
+
+/* Pictures with transparency lie on white; the colour of their opaque borders is no background. */
+static void test_transparent(void **state)
+{
+    enum { W = 24, H = 18 };
+    uint8_t px[H][W][4];
+    tiny_folder f;
+    ted4_dataset d;
+    ted4_message m;
+
+    (void)state;
+    load_row(&d, &f, 4, 2);
+    ted4_dataset_free(&d);
+    for (int y = 0; y < H; y++)
+        for (int x = 0; x < W; x++) {
+            const int inside = x > 5 && x < 18 && y > 4 && y < 13;
+            const uint8_t pixel[4] = { inside ? 200 : 20, 20, 20, inside ? 120 : 255 };
+
+            memcpy(px[y][x], pixel, sizeof pixel);
+        }
+    for (int i = 0; i < 6; i++) {
+        char name[32];
+
+        snprintf(name, sizeof name, "%d.png", i);
+        tiny_png(&f, name, W, H, PNG_FORMAT_RGBA, px[0][0]);
+    }
+    assert_string_equal(tiny_load(&d, &f, &tiny_options), "");
+    assert_int_equal(ted4_dataset_verify(&d, NULL, &m), 0);
+    scatter(&d, NULL);
+    for (int k = 0; k < 3; k++)
+        assert_int_equal(d.background[k], 255);
+    unload(&d, &f);
+}
+
 /* The depth of a pixel that shows a ball is that of the ball's front side. */
 static void test_sweep(void **state)
 {
@@ -279,7 +368,8 @@ int main(void)
         cmocka_unit_test(test_shown),       cmocka_unit_test(test_sweep),
         cmocka_unit_test(test_useless),     cmocka_unit_test(test_useful),
         cmocka_unit_test(test_held_out),    cmocka_unit_test(test_bounds),
-        cmocka_unit_test(test_one_picture),
+        cmocka_unit_test(test_one_picture), cmocka_unit_test(test_many_pictures),
+        cmocka_unit_test(test_transparent),
     };
 
     return cmocka_run_group_tests_name("scatter", tests, set_up_still, tear_down);

@@ -206,6 +206,9 @@ static void test_lists(void **state)
           "023|7 f4" },
         { "\"train_filenames\": [\"./0.png\", \"3.png\"], \"val_filenames\": [\"1.png\"],",
           "03|1 f2" },
+        { "\"train_filenames\": [\"./0.png\", \"3.png\"], \"test_filenames\": [], "
+          "\"val_filenames\": [\"1.png\"],",
+          "03|1 f2" },
         { "\"train_filenames\": [\"5.png\"],", "5 f1" },
         { "\"test_filenames\": [\"5.png\"],", "train_filenames: missing" },
         { "\"train_filenames\": \"5.png\",", "train_filenames: not a list" },

@@ -22,4 +22,5 @@ run lines_queries 0 ' 4 passed, 0 failed, 0 without answer' tests/class-t.txt "$
 run no_hex 1 ' 3 passed, 0 failed, 4 without answer' lists/few.txt "$line no-hex"
 run two_verdicts 1 ' 3 passed, 0 failed, 4 without answer' lists/few.txt "$line two-verdicts"
 run no_end 1 ' 0 passed, 0 failed, 8 without answer' lists/few.txt "$line no-end"
+expect unread 0 '"error":"io.read"' "$TED4_BUILD/adapter" --ted4-run "$out" --tiers T0
 exit $bad

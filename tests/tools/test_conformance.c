@@ -188,6 +188,23 @@ static void no_answers(void **state)
     expect("old-protocol", 1, "protocol is not 1");
 }
 
+/* A decoder says all of the handshake, or has no verdict. */
+static void capabilities(void **state)
+{
+    static const char *const member[] = { "name",  "version", "spec",   "profiles", "max_level",
+                                          "tiers", "class",   "strict", "declines", "knobs" };
+
+    (void)state;
+    for (size_t i = 0; i < sizeof member / sizeof *member; i++) {
+        char way[40], text[80];
+
+        snprintf(way, sizeof way, "without-%s", member[i]);
+        snprintf(text, sizeof text, "capabilities: %s is missing", member[i]);
+        expect(way, 1, text);
+    }
+    expect("class-unknown", 1, "capabilities: class is missing, or not what it has to be");
+}
+
 static void lies(void **state)
 {
     (void)state;
@@ -389,6 +406,7 @@ int main(void)
         cmocka_unit_test(levels_conform),
         cmocka_unit_test(ways_agree),
         cmocka_unit_test(threads_agree),
+        cmocka_unit_test(capabilities),
         cmocka_unit_test(lies),
         cmocka_unit_test(class_t),
         cmocka_unit_test(lenient_mode),

@@ -1,7 +1,7 @@
 /* test_mishaps_scene.c - ted4enc as a program, when a picture disappears or changes during
  * training, when a checkpoint was made from other pictures, or when a value is not finite: one line
  * on standard error gives the reason, the exit status is 3, and the last checkpoint leads to the
- * same bytes as a run without disturbance.
+ * same bytes as a run without disturbance. Only a search for a size that has found a file keeps it.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "test.h"
 #include "mishap.h"
@@ -15,9 +15,17 @@ typedef struct {
     int read, write;
 } gate;
 
-static gate close_gate(const char *path)
+static void close_gate(const gate *g)
 {
     static const char bytes[4096];
+
+    for (size_t size = sizeof bytes; size > 0; size /= 2)
+        while (write(g->write, bytes, size) > 0)
+            continue;
+}
+
+static gate make_gate(const char *path)
+{
     gate g;
 
     must(mkfifo(path, 0600) == 0, path);
@@ -25,9 +33,6 @@ static gate close_gate(const char *path)
     g.write = open(path, O_WRONLY | O_NONBLOCK | O_CLOEXEC);
     assert_true(g.read >= 0);
     assert_true(g.write >= 0);
-    for (size_t size = sizeof bytes; size > 0; size /= 2)
-        while (write(g.write, bytes, size) > 0)
-            continue;
     return g;
 }
 
@@ -37,6 +42,13 @@ static void open_gate(const gate *g)
 
     while (read(g->read, bytes, sizeof bytes) > 0)
         continue;
+}
+
+static void remove_gate(const gate *g)
+{
+    close(g->read);
+    close(g->write);
+    gone("gate");
 }
 
 /* Starts a run that waits at the pipe, and waits until it has written a checkpoint. */
@@ -57,16 +69,17 @@ static pid_t start_until_checkpoint(void)
 static void spoil(void (*damage)(const char *path), const char *what)
 {
     static const char name[] = "scene/images/c1_f2.png";
-    const gate g = close_gate(tiny_path(&folder, "gate"));
+    const gate g = make_gate(tiny_path(&folder, "gate"));
+
+    close_gate(&g);
+
     const pid_t child = start_until_checkpoint();
     ball_file whole = read_file(name);
 
     damage(tiny_path(&folder, name));
     open_gate(&g);
     assert_int_equal(finish(child), 3);
-    close(g.read);
-    close(g.write);
-    gone("gate");
+    remove_gate(&g);
     expect_words(what);
     expect_files("c");
     tiny_bytes(&folder, name, whole.bytes, whole.size);
@@ -99,6 +112,57 @@ static void test_pictures(void **state)
     spoil(take_away, "c1_f2.png: No such file");
     spoil(cut_short, "c1_f2.png: PNG");
     spoil(exchange, "c1_f2.png: the file has changed");
+}
+
+/* Starts a search for a size, and takes a picture away after its first trial, which is the
+ * reference. Returns the exit status. */
+static int search_without_picture(size_t target)
+{
+    static const char name[] = "scene/images/c1_f2.png";
+    const gate g = make_gate(tiny_path(&folder, "gate"));
+    char arguments[128], line[MOST_LOG] = "";
+    ball_file whole = read_file(name);
+    size_t n = 0;
+    int status;
+
+    snprintf(arguments, sizeof arguments, "-o out/x.ted4 --log gate --target-size %zu", target);
+
+    const pid_t child = start(arguments, 0);
+
+    while (strstr(line, "{\"step\":900,\"stage") == NULL) {
+        const ssize_t more = read(g.read, line + n, sizeof line - 1 - n);
+
+        if (more > 0)
+            line[n += (size_t)more] = 0;
+        else if (waitpid(child, &status, WNOHANG) != 0)
+            fail_msg("the search was over before its first trial");
+        else
+            pause_us(1000);
+    }
+    close_gate(&g);
+    take_away(tiny_path(&folder, name));
+    open_gate(&g);
+    status = finish(child);
+    remove_gate(&g);
+    tiny_bytes(&folder, name, whole.bytes, whole.size);
+    free(whole.bytes);
+    return status;
+}
+
+/* A search for a size that cannot go on leaves the file that fits, if it has one. */
+static void test_search(void **state)
+{
+    (void)state;
+    begin_test();
+    assert_int_equal(search_without_picture(2 * reference.file.size), 0);
+    expect_words("c1_f2.png: No such file");
+    expect_words("the file of lambda 0.002 is kept");
+    expect_files("x.ted4");
+    expect_same("out/x.ted4", &reference.file);
+
+    assert_int_equal(search_without_picture(reference.file.size / 2), 3);
+    expect_words("c1_f2.png: No such file");
+    expect_files("");
 }
 
 /* A checkpoint belongs to the pictures from which it was made. */
@@ -165,6 +229,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_pictures),
+        cmocka_unit_test(test_search),
         cmocka_unit_test(test_other_scene),
         cmocka_unit_test(test_not_finite),
     };

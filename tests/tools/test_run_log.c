@@ -337,6 +337,51 @@ static void test_thrown_away(void **state)
     tiny_free(&scene);
 }
 
+/* Writes a line for each step of a trial that begins at the trainer's step. */
+static void put_trial(ted4_run_log *l, ted4_trainer *t, const uint64_t *step, size_t n)
+{
+    double cpu, ms;
+
+    ted4_run_log_begin_trial(l, t);
+    for (size_t i = 0; i < n; i++)
+        put(l, t, step[i], &cpu, &ms);
+}
+
+/* A rollback inside a trial of a search for a size cuts no line of the trials before. */
+static void test_trials_apart(void **state)
+{
+    static const uint64_t step[] = { 1000, 1250, 1500 };
+    const ted4_train_options o = ball_options();
+    ted4_dataset d;
+    ted4_trainer t;
+    ted4_run_log l;
+    tiny_folder scene;
+    double cpu, ms;
+    char why[256], path[600], before[MOST_LOG], after[MOST_LOG];
+
+    (void)state;
+    begin_test();
+    snprintf(path, sizeof path, "%s", tiny_path(&folder, "out/l"));
+    ball_load(&scene, &d, 3, 1);
+    ball_begin(&t, &o, &d, NULL);
+    assert_int_equal(ted4_run_log_open(&l, path, &t, 0, NULL, why, sizeof why), 0);
+    put(&l, &t, 800, &cpu, &ms);
+    put_trial(&l, &t, step, 3);
+    t.iteration = 800;
+    put_trial(&l, &t, step, 1);
+    read_text("out/l", before, sizeof before);
+    put(&l, &t, 1250, &cpu, &ms);
+    t.iteration = 1000;
+    assert_int_equal(ted4_run_log_cut(&l, &t, why, sizeof why), 0);
+    read_text("out/l", after, sizeof after);
+    assert_string_equal(after, before);
+    assert_int_equal(ted4_run_log_close(&l, why, sizeof why), 0);
+    gone("out/l");
+    ted4_trainer_finish(&t);
+    ted4_dataset_free(&d);
+    tiny_free(&scene);
+}
+
 /* Fills every number of a line that can be so with x. */
 static void fill(ted4_run_log *l, ted4_trainer *t, double x)
 {
@@ -423,6 +468,7 @@ int main(void)
         cmocka_unit_test(test_log_before_rollback),
         cmocka_unit_test(test_rollback),
         cmocka_unit_test(test_thrown_away),
+        cmocka_unit_test(test_trials_apart),
         cmocka_unit_test(test_diverged),
         cmocka_unit_test(test_wrong_log),
     };

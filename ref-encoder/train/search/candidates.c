@@ -149,16 +149,17 @@ static int prune_site(ted4_trainer *t, ted4_site site, int to, const uint8_t *he
     double *moment = malloc(side * side * sizeof *moment);
     float *rows = NULL;
     const int count = moment != NULL ? ted4_site_readers(t, site, &rows) : -1;
-    int bad = count < 0 || ted4_site_moment(t, site, moment) != 0;
+    const int failed = count >= 0 && ted4_site_moment(t, site, moment) != 0;
+    int starved = count < 0;
 
-    if (!bad) {
+    if (!starved && !failed) {
         const ted4_units u = { width, count, moment, rows, held };
 
-        bad = ted4_prune_units(w, &u, to) != 0;
+        starved = ted4_prune_units(w, &u, to) != 0;
     }
     free(moment);
     free(rows);
-    return bad ? ted4_trainer_fail(t, "no memory to change the model") : 0;
+    return starved ? ted4_trainer_fail(t, "no memory to change the model") : failed ? -1 : 0;
 }
 
 enum { MOST_PRUNED = TED4_NETS_R * TED4_MAX_LAYERS };
@@ -289,8 +290,12 @@ static int fewer_offsets(operation *o, int to)
     const size_t K = o->s.head.n_offsets, n = o->t->anchors.n;
     float *of_each = malloc((n * K + 1) * sizeof *of_each);
     double use[TED4_MAX_OFFSETS] = { 0 };
-    const int bad = of_each == NULL || ted4_opacity_sensitivity(o->t, of_each) != 0;
     int kept = 0;
+
+    if (of_each == NULL)
+        return ted4_trainer_fail(o->t, "no memory to look at Gaussians");
+
+    const int bad = ted4_opacity_sensitivity(o->t, of_each) != 0;
 
     for (size_t i = 0; !bad && i < n * K; i++)
         use[i % K] += fmax((double)of_each[i], 0.0);
@@ -304,7 +309,7 @@ static int fewer_offsets(operation *o, int to)
             o->s.offset[kept++] = (int)k;
     }
     o->s.head.n_offsets = (uint8_t)to;
-    return bad ? ted4_trainer_fail(o->t, "no memory to look at Gaussians") : 0;
+    return bad;
 }
 
 #define LN2 0x1.62e42fefa39efp-1
