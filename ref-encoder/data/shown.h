@@ -6,9 +6,9 @@
 
 #include "data/dataset.h"
 
-/* The pictures are all training pictures, or those of evenly spaced frames, so that they are at
- * most TED4_SHOWN_MOST and take at most TED4_SHOWN_BYTES. There are none if no picture is for
- * training. */
+/* The pictures are all training pictures, or those of evenly spaced frames that have any, or evenly
+ * spaced ones of a single frame, so that they are at most TED4_SHOWN_MOST and take at most
+ * TED4_SHOWN_BYTES. There are none if no picture is for training. */
 enum { TED4_SHOWN_MOST = 128 };
 #define TED4_SHOWN_BYTES ((size_t)512 << 20)
 

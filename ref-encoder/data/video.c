@@ -31,7 +31,7 @@
 enum { TELL_EVERY = 1000 }; /* interval of progress reports, in milliseconds */
 
 /* The filters make time stamps even, so that no frame is duplicated or dropped; convert to RGB,
- * identically on every machine; and remove the colour tags that would make a PNG reader convert
+ * identically on every machine; and remove the colour tags, by which some PNG readers would convert
  * again. */
 #define FILTERS                                                                                    \
     "settb=AVTB,setpts=N*40000,scale=flags=bitexact+accurate_rnd+full_chroma_int+full_chroma_inp," \

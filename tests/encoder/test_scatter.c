@@ -1,6 +1,6 @@
 /* test_scatter.c - data/shown.h, data/sweep.h and data/scatter.h: what counts as plain background;
- * points are placed where pictures show something, at the depth at which they agree; useful points
- * stay.
+ * which of many pictures are looked at; points are placed where pictures show something, at the
+ * depth at which they agree; useful points stay.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <stdlib.h>

@@ -268,6 +268,32 @@ static void test_rollback(void **state)
     expect_files("c l x.ted4");
 }
 
+/* A trainer that takes no steps, for logs in out/l, whose path is path. */
+typedef struct {
+    tiny_folder scene;
+    ted4_dataset d;
+    ted4_trainer t;
+    char path[600];
+} idle_trainer;
+
+static void begin_idle(idle_trainer *i)
+{
+    const ted4_train_options o = ball_options();
+
+    begin_test();
+    snprintf(i->path, sizeof i->path, "%s", tiny_path(&folder, "out/l"));
+    ball_load(&i->scene, &i->d, 3, 1);
+    ball_begin(&i->t, &o, &i->d, NULL);
+}
+
+static void end_idle(idle_trainer *i)
+{
+    gone("out/l");
+    ted4_trainer_finish(&i->t);
+    ted4_dataset_free(&i->d);
+    tiny_free(&i->scene);
+}
+
 /* Works until the processor's clock has advanced by seconds, as the log measures it. */
 static void work(ted4_run_log *l, ted4_trainer *t, double seconds)
 {
@@ -298,43 +324,35 @@ static void put(ted4_run_log *l, ted4_trainer *t, uint64_t step, double *cpu, do
  * log counts from its last line. */
 static void test_thrown_away(void **state)
 {
-    const ted4_train_options o = ball_options();
-    ted4_dataset d;
-    ted4_trainer t;
+    idle_trainer idle;
+    ted4_trainer *const t = &idle.t;
     ted4_run_log l;
-    tiny_folder scene;
     double cpu, ms, began;
-    char why[256], path[600];
+    char why[256];
 
     (void)state;
-    begin_test();
-    snprintf(path, sizeof path, "%s", tiny_path(&folder, "out/l"));
-    ball_load(&scene, &d, 3, 1);
-    ball_begin(&t, &o, &d, NULL);
-    assert_int_equal(ted4_run_log_open(&l, path, &t, 0, NULL, why, sizeof why), 0);
-    work(&l, &t, 0.1);
-    put(&l, &t, 100, &cpu, &ms);
-    work(&l, &t, 0.1);
-    t.iteration = 0;
-    assert_int_equal(ted4_run_log_cut(&l, &t, why, sizeof why), 0);
-    began = t.seconds;
-    work(&l, &t, 0.1);
-    put(&l, &t, 100, &cpu, &ms);
+    begin_idle(&idle);
+    assert_int_equal(ted4_run_log_open(&l, idle.path, t, 0, NULL, why, sizeof why), 0);
+    work(&l, t, 0.1);
+    put(&l, t, 100, &cpu, &ms);
+    work(&l, t, 0.1);
+    t->iteration = 0;
+    assert_int_equal(ted4_run_log_cut(&l, t, why, sizeof why), 0);
+    began = t->seconds;
+    work(&l, t, 0.1);
+    put(&l, t, 100, &cpu, &ms);
     assert_true(cpu >= 0.299);
-    assert_true(t.seconds >= 0.299);
+    assert_true(t->seconds >= 0.299);
     assert_true(ms > 0);
-    assert_true(fabs(1e-3 * 100 * ms - (t.seconds - began)) < 1e-3);
+    assert_true(fabs(1e-3 * 100 * ms - (t->seconds - began)) < 1e-3);
     assert_int_equal(ted4_run_log_close(&l, why, sizeof why), 0);
 
-    assert_int_equal(ted4_run_log_open(&l, path, &t, 1, NULL, why, sizeof why), 0);
-    work(&l, &t, 0.1);
-    put(&l, &t, 200, &cpu, &ms);
+    assert_int_equal(ted4_run_log_open(&l, idle.path, t, 1, NULL, why, sizeof why), 0);
+    work(&l, t, 0.1);
+    put(&l, t, 200, &cpu, &ms);
     assert_true(cpu >= 0.399);
     assert_int_equal(ted4_run_log_close(&l, why, sizeof why), 0);
-    gone("out/l");
-    ted4_trainer_finish(&t);
-    ted4_dataset_free(&d);
-    tiny_free(&scene);
+    end_idle(&idle);
 }
 
 /* Writes a line for each step of a trial that begins at the trainer's step. */
@@ -351,35 +369,27 @@ static void put_trial(ted4_run_log *l, ted4_trainer *t, const uint64_t *step, si
 static void test_trials_apart(void **state)
 {
     static const uint64_t step[] = { 1000, 1250, 1500 };
-    const ted4_train_options o = ball_options();
-    ted4_dataset d;
-    ted4_trainer t;
+    idle_trainer idle;
+    ted4_trainer *const t = &idle.t;
     ted4_run_log l;
-    tiny_folder scene;
     double cpu, ms;
-    char why[256], path[600], before[MOST_LOG], after[MOST_LOG];
+    char why[256], before[MOST_LOG], after[MOST_LOG];
 
     (void)state;
-    begin_test();
-    snprintf(path, sizeof path, "%s", tiny_path(&folder, "out/l"));
-    ball_load(&scene, &d, 3, 1);
-    ball_begin(&t, &o, &d, NULL);
-    assert_int_equal(ted4_run_log_open(&l, path, &t, 0, NULL, why, sizeof why), 0);
-    put(&l, &t, 800, &cpu, &ms);
-    put_trial(&l, &t, step, 3);
-    t.iteration = 800;
-    put_trial(&l, &t, step, 1);
+    begin_idle(&idle);
+    assert_int_equal(ted4_run_log_open(&l, idle.path, t, 0, NULL, why, sizeof why), 0);
+    put(&l, t, 800, &cpu, &ms);
+    put_trial(&l, t, step, 3);
+    t->iteration = 800;
+    put_trial(&l, t, step, 1);
     read_text("out/l", before, sizeof before);
-    put(&l, &t, 1250, &cpu, &ms);
-    t.iteration = 1000;
-    assert_int_equal(ted4_run_log_cut(&l, &t, why, sizeof why), 0);
+    put(&l, t, 1250, &cpu, &ms);
+    t->iteration = 1000;
+    assert_int_equal(ted4_run_log_cut(&l, t, why, sizeof why), 0);
     read_text("out/l", after, sizeof after);
     assert_string_equal(after, before);
     assert_int_equal(ted4_run_log_close(&l, why, sizeof why), 0);
-    gone("out/l");
-    ted4_trainer_finish(&t);
-    ted4_dataset_free(&d);
-    tiny_free(&scene);
+    end_idle(&idle);
 }
 
 /* Fills every number of a line that can be so with x. */
@@ -402,24 +412,19 @@ static void test_diverged(void **state)
 {
     static const double values[] = { 1e300, -1e300, NAN, INFINITY };
     static const char *const names[] = { "loss", "l1", "ssim", "psnr", "splats", "bytes", "left" };
-    const ted4_train_options o = ball_options();
-    ted4_dataset d;
-    ted4_trainer t;
+    idle_trainer idle;
+    ted4_trainer *const t = &idle.t;
     ted4_run_log l;
-    tiny_folder scene;
-    char why[256], path[600], text[MOST_LOG];
+    char why[256], text[MOST_LOG];
 
     (void)state;
-    begin_test();
-    snprintf(path, sizeof path, "%s", tiny_path(&folder, "out/l"));
-    ball_load(&scene, &d, 3, 1);
-    ball_begin(&t, &o, &d, NULL);
+    begin_idle(&idle);
     for (size_t i = 0; i < sizeof values / sizeof values[0]; i++) {
-        assert_int_equal(ted4_run_log_open(&l, path, &t, 0, NULL, why, sizeof why), 0);
-        fill(&l, &t, values[i]);
-        assert_int_equal(ted4_run_log_step(&l, &t, why, sizeof why), 0);
-        t.poses.moved = values[i];
-        assert_int_equal(ted4_run_log_poses(&l, &t, why, sizeof why), 0);
+        assert_int_equal(ted4_run_log_open(&l, idle.path, t, 0, NULL, why, sizeof why), 0);
+        fill(&l, t, values[i]);
+        assert_int_equal(ted4_run_log_step(&l, t, why, sizeof why), 0);
+        t->poses.moved = values[i];
+        assert_int_equal(ted4_run_log_poses(&l, t, why, sizeof why), 0);
         assert_int_equal(ted4_run_log_close(&l, why, sizeof why), 0);
         read_text("out/l", text, sizeof text);
 
@@ -438,10 +443,7 @@ static void test_diverged(void **state)
         json_decref(line);
         json_decref(poses);
     }
-    gone("out/l");
-    ted4_trainer_finish(&t);
-    ted4_dataset_free(&d);
-    tiny_free(&scene);
+    end_idle(&idle);
 }
 
 /* A file that is not a log is not changed. */
