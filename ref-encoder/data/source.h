@@ -34,8 +34,11 @@ uint8_t *ted4_source_decode(void *sources, size_t i, size_t *size, ted4_message 
 /* Gives the cube at which the cameras of training pictures look. Its centre is the point nearest to
  * all optical axes in the least-squares sense, and half its side is 0.6 times the median distance
  * of the cameras from the centre. If the axes have no common point in front of the cameras (one
- * camera, parallel or diverging axes), the centre lies in front of the mean camera, at a distance
- * that equals the spread of the cameras but is at least 1. Returns 0, or -1 if memory runs out. */
+ * camera, parallel or diverging axes, cameras that turn about themselves), their depth is unknown,
+ * and is taken for the spread of the cameras, but at least 1. The centre then lies at that depth in
+ * front of the mean camera, or at the mean camera if the cameras look all around, and half the side
+ * is 0.6 times the median distance from the centre either of the cameras or of the places at that
+ * depth on their axes, whichever is larger. Returns 0, or -1 if memory runs out. */
 int ted4_view_box(const ted4_dataset *d, double centre[3], double *half);
 
 #endif

@@ -4,6 +4,7 @@
 
 #include <errno.h>
 #include <signal.h>
+#include <stdatomic.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -12,7 +13,9 @@
 static const int signals[] = { SIGINT, SIGTERM, SIGHUP };
 enum { N_SIGNALS = (int)(sizeof signals / sizeof signals[0]) };
 
-static volatile sig_atomic_t asked, silent, keeping;
+/* The first signal, or 0. Two signals can be handled at the same time, by two threads. */
+static atomic_int asked;
+static volatile sig_atomic_t silent, keeping;
 
 static void take(int signal);
 
@@ -39,11 +42,10 @@ static void change(int signal, void (*to)(int))
  * terminal was closed is told by the system and by a shell, and is one request. */
 static void take(int signal)
 {
-    const int before = errno, first = asked == 0;
+    int none = 0;
+    const int before = errno, first = atomic_compare_exchange_strong(&asked, &none, signal);
     const int at_once = !keeping || (!first && signal != SIGHUP);
 
-    if (first)
-        asked = signal;
     if (!at_once)
         change(SIGHUP, SIG_IGN);
     for (int i = 0; i < N_SIGNALS && at_once; i++)

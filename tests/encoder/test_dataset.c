@@ -458,7 +458,8 @@ static void test_random_points(void **state)
     assert_memory_equal(d.points, e.points, 3 * d.n_points * sizeof *d.points);
     ted4_dataset_free(&d);
     ted4_dataset_free(&e);
-    /* Two cameras that look ahead and outwards: their axes cross behind them. */
+    /* Two cameras that look ahead and outwards: their axes cross behind them. The places at a depth
+     * of 1 on the axes are (+-(1 + sqrt(1/2)), 0, -sqrt(1/2)). */
     s.n = 0;
     tiny_add(&s, "{\"fl_x\": 10, \"frames\": [");
     for (int i = 0; i < 2; i++) {
@@ -470,7 +471,7 @@ static void test_random_points(void **state)
     }
     tiny_text(&f, "transforms.json", s.text);
     load(&d, &f, &tiny_options);
-    expect_cube(&d, 0, 0, -1, 0.6 * sqrt(2));
+    expect_cube(&d, 0, 0, -1, 0.6 * hypot(1 + sqrt(0.5), 1 - sqrt(0.5)));
     ted4_dataset_free(&d);
     tiny_free(&f);
 }
