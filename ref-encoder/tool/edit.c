@@ -304,17 +304,20 @@ static int is_of_minor_1(const char *type)
     return strcmp(type, "CAMS") == 0 || strcmp(type, "THMB") == 0;
 }
 
-/* R-CON-007: the minor version of the new file. That of a later specification is kept. */
+/* R-CON-007: the minor version of the new file. That of a later specification is kept, and so is
+ * that of a file whose chunks stay as they are. */
 static int minor_version(const ted4_edit *e)
 {
     const int found = e->file[MINOR_AT];
-    int described = 0;
+    int described = 0, changes = e->n_added > 0;
 
-    for (size_t i = 0; i < e->n; i++)
+    for (size_t i = 0; i < e->n; i++) {
+        changes |= e->chunk[i].dropped;
         described |= !e->chunk[i].dropped && is_of_minor_1(e->chunk[i].view.type);
+    }
     for (size_t i = 0; i < e->n_added; i++)
         described |= is_of_minor_1(e->added[i].type);
-    if (found > COMPACT_MINOR)
+    if (found > COMPACT_MINOR || !changes)
         return found;
     return e->file[PROFILE_AT] == TED4_PROFILE_COMPACT ? COMPACT_MINOR : described;
 }

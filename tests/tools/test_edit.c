@@ -204,7 +204,8 @@ static void unknown_chunks_and_versions_stay(void **state)
     free(again);
 }
 
-/* R-CON-007: an editor of this version knows 2, and keeps it for profile Compact only. */
+/* R-CON-007: an editor of this version knows 2; when it changes chunks, it keeps it for profile
+ * Compact only. R-BIT-002: when it changes nothing, the bytes stay. */
 static void minor_of_the_profile(void **state)
 {
     static const struct {
@@ -219,7 +220,13 @@ static void minor_of_the_profile(void **state)
         uint8_t *file = plain_file_of(of[i].profile, &size), *again;
 
         file[MINOR_AT] = of[i].before;
+        const size_t before = size;
+
         again = with_lines(file, &size, (const char *const[]) { "title=" }, 1);
+        assert_int_equal(size, before);
+        assert_memory_equal(again, file, size);
+        free(again);
+        again = with_lines(file, &size, (const char *const[]) { "title=x" }, 1);
         assert_int_equal(again[MINOR_AT], of[i].after);
         free(again);
         free(file);
