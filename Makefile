@@ -25,6 +25,10 @@ FREE   = $(ARCH) -Wno-psabi -ffp-contract=off -fno-math-errno -fno-trapping-math
 # Files compiled once a level of instruction sets, of which base/level.c chooses one when a program
 # runs.
 MACHINE := $(firstword $(subst -, ,$(shell $(CC) $(CFLAGS) -dumpmachine)))
+# gcc -m32 still says x86_64.
+ifneq ($(findstring __i386__,$(shell $(CC) $(CFLAGS) -dM -E -x c /dev/null)),)
+MACHINE := i686
+endif
 LEVELS  = $(if $(filter x86_64,$(MACHINE)),base v3 v4,base)
 LEVELED = $(addprefix ref-decoder/render/,project.c blend.c) \
           $(addprefix ref-encoder/kernel/,dense_product.c dense_weights.c) \

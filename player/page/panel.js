@@ -29,7 +29,7 @@ function sceneRows({ bytes, info, meta }) {
     ["File", `${count(bytes.length)} bytes`],
     ["Anchors", `${count(info.anchors)}, ${count(info.moving)} moving`],
     ["Gaussians", count(info.gaussians)],
-    ["Frames", `${count(info.frames)}, ${info.rate} per second`],
+    ["Frames", `${count(info.frames)}, ${Number(info.rate.toPrecision(7))} per second`],
     ["Motion", info.motion],
     ["Activation", info.activation ? "yes" : "no"],
     ["View dependence", info.view],

@@ -20,15 +20,18 @@ enum { MOST_TRIALS = 8 };
 #define FARTHEST     1000.0
 #define LEAST_LAMBDA 1e-7
 #define MOST_LAMBDA  10.0
+/* The next guess, as a share of the last, after a first trial that left no Gaussian. */
+#define RETREAT      (1.0 / 32.0)
 
 /* The last trial on each side of the target: [0] a file that is too large, [1] one that fits. All
- * values are logarithms. have: bit i is set if entry i is filled. */
+ * values are logarithms. have: bit i is set if entry i is filled. empty: of the least lambda that
+ * left no Gaussian, infinity if all did. */
 typedef struct {
-    double lambda[2], size[2];
+    double lambda[2], size[2], empty;
     int have, trials;
 } bracket;
 
-/* lambda, size: those of the last trial. */
+/* The next guess after a trial that gave a file of that size. */
 static double next_lambda(const bracket *b, double target, double lambda, double size)
 {
     if (b->have == 3) {
@@ -43,6 +46,15 @@ static double next_lambda(const bracket *b, double target, double lambda, double
     const double factor = fmin(fmax(ted4_math_exp(fmin(away, 50.0)), NEAREST), FARTHEST);
 
     return b->have == 1 ? lambda * factor : lambda / factor;
+}
+
+/* Returns the guess, or one between the file that is too large and a lambda that leaves nothing. */
+static double below_empty(const bracket *b, double lambda)
+{
+    if (ted4_math_log(lambda) < b->empty)
+        return lambda;
+    return ted4_math_exp(b->have & 1 ? 0.5 * (b->lambda[0] + b->empty)
+                                     : b->empty + ted4_math_log(RETREAT));
 }
 
 static int one_trial(ted4_training *t, const ted4_snapshot *start, double lambda, ted4_coded *c)
@@ -86,38 +98,52 @@ static int give_up(const ted4_training *t, const ted4_coded *best)
     return 0;
 }
 
+/* Adds a trial to the bracket, and its file to the best one. Returns the next lambda, or 0 if the
+ * search ends here. */
+static double learn(bracket *b, size_t target, ted4_coded *c, ted4_coded *best)
+{
+    const int fits = c->size <= target;
+    const double size = (double)c->size, lambda = c->lambda;
+
+    b->lambda[fits] = ted4_math_log(lambda);
+    b->size[fits] = ted4_math_log(size);
+    b->have |= 1 << fits;
+    b->trials++;
+    if (is_better(c, best, target)) {
+        ted4_coded_free(best);
+        *best = *c;
+    } else {
+        ted4_coded_free(c);
+    }
+    if (fits ? size >= (1.0 - NEAR) * (double)target || lambda <= LEAST_LAMBDA
+             : lambda >= MOST_LAMBDA)
+        return 0;
+    return next_lambda(b, (double)target, lambda, size);
+}
+
+/* A lambda that leaves no Gaussian bounds the search, for all processes alike; any other failure
+ * ends it. */
 static int search(ted4_training *t, const ted4_snapshot *start, ted4_coded *best)
 {
-    const size_t target = t->request->target_size;
+    bracket b = { .empty = INFINITY };
     double lambda = t->trainer->opt.lambda;
-    bracket b = { 0 };
 
-    for (int i = 0; i < MOST_TRIALS; i++) {
+    for (int i = 0; i < MOST_TRIALS && lambda > 0; i++) {
         ted4_coded c;
 
-        lambda = fmin(fmax(lambda, LEAST_LAMBDA), MOST_LAMBDA);
-        if (one_trial(t, start, lambda, &c) != 0)
-            return give_up(t, best);
-
-        const int fits = c.size <= target;
-        const double size = (double)c.size;
-
-        b.lambda[fits] = ted4_math_log(lambda);
-        b.size[fits] = ted4_math_log(size);
-        b.have |= 1 << fits;
-        b.trials++;
-        if (is_better(&c, best, target)) {
-            ted4_coded_free(best);
-            *best = c;
+        lambda = below_empty(&b, fmin(fmax(lambda, LEAST_LAMBDA), MOST_LAMBDA));
+        if (one_trial(t, start, lambda, &c) == 0) {
+            lambda = learn(&b, t->request->target_size, &c, best);
+        } else if (t->trainer->is_empty && t->stopped == 0) {
+            b.empty = ted4_math_log(lambda);
+            ted4_teller_say(t->teller, "lambda %.5g: no Gaussian is left", lambda);
         } else {
-            ted4_coded_free(&c);
+            return give_up(t, best);
         }
-        if ((fits && size >= (1.0 - NEAR) * (double)target) || (fits && lambda <= LEAST_LAMBDA) ||
-            (!fits && lambda >= MOST_LAMBDA))
-            break;
-        lambda = next_lambda(&b, (double)target, lambda, size);
     }
-    return 0;
+    if (best->bytes == NULL)
+        snprintf(t->why, sizeof t->why, "%s", t->trainer->message.text);
+    return best->bytes == NULL ? -1 : 0;
 }
 
 int ted4_training_target(ted4_training *t, ted4_coded *c)

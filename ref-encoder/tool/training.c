@@ -56,6 +56,9 @@ static int find_start(ted4_training *t)
         ted4_teller_say(t->teller, "%s: going on from step %llu of %llu", r->checkpoint,
                         (unsigned long long)trainer->iteration,
                         (unsigned long long)ted4_trainer_total(trainer));
+        if (r->stage1 != NULL && !exists(r->stage1) && trainer->phase.stage2 && leads(t))
+            ted4_teller_error(t->teller, "warning: %s is not written: stage 1 is over in %s",
+                              r->stage1, r->checkpoint);
     } else if (exists(r->stage1)) {
         if (ted4_checkpoint_load(trainer, r->stage1) != 0)
             return fail(t);

@@ -132,6 +132,28 @@ static void test_not_met(void **state)
     assert_true(size_of("small.ted4") < size_of("end0.ted4"));
 }
 
+/* A lambda that leaves no Gaussian bounds the search, which goes on below it: the first one that is
+ * tried, which cannot be used by itself, or a later one. */
+static void test_too_high(void **state)
+{
+    const char name[] = "high.ted4", most[] = "--iterations 150,1200 --set mask_weight=1";
+    char arguments[160];
+
+    (void)state;
+    snprintf(arguments, sizeof arguments, "-o %s %s --lambda 10", name, most);
+    assert_int_equal(encode(arguments), 3);
+    assert_true(contains("err", "nothing is left to encode: at lambda 10, every Gaussian"));
+    assert_int_equal(access(tiny_path(&folder, name), F_OK), -1);
+    for (int i = 0; i < 2; i++) {
+        snprintf(arguments, sizeof arguments, "-o %s %s --lambda %s --target-size 500", name, most,
+                 i ? "0.1" : "10");
+        assert_int_equal(encode(arguments), 2);
+        assert_true(contains("err", "no Gaussian is left"));
+        assert_true(contains("err", "this is the smallest file"));
+        assert_true(size_of(name) > 500);
+    }
+}
+
 /* The same file results from a shared end of stage 1, which the run does not write again; that of
  * another scene or of other options is refused. */
 static void test_stage1(void **state)
@@ -168,7 +190,7 @@ static void test_resumed(void **state)
 }
 
 /* A checkpoint of stage 2 contains only the lambda with which it was made: no search can begin
- * there. */
+ * there, and the end of stage 1 cannot be written. */
 static void test_too_late(void **state)
 {
     (void)state;
@@ -179,6 +201,10 @@ static void test_too_late(void **state)
     assert_true(
         contains("err", "late: inside stage 2; a search for a size begins at the end of stage 1"));
     assert_int_equal(access(tiny_path(&folder, "later.ted4"), F_OK), -1);
+    assert_int_equal(
+        encode("-o later.ted4 --lambda 0.01 --checkpoint late --resume --stage1 never"), 0);
+    assert_true(contains("err", "warning: never is not written: stage 1 is over in late"));
+    assert_int_equal(access(tiny_path(&folder, "never"), F_OK), -1);
 }
 
 int main(void)
@@ -186,7 +212,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_met),      cmocka_unit_test(test_not_met),
         cmocka_unit_test(test_stage1),   cmocka_unit_test(test_resumed),
-        cmocka_unit_test(test_too_late),
+        cmocka_unit_test(test_too_high), cmocka_unit_test(test_too_late),
     };
 
     build = getenv("TED4_BUILD");

@@ -80,8 +80,8 @@ static const ted4_command COMMAND = {
     "ted4scene",
     "NAME -o FOLDER [options]",
     "Makes a small synthetic dynamic scene. What is not given, and has no default\n"
-    "here, is that of the NAME in the list below. The file truth.json in the folder\n"
-    "says what is held out or disturbed.",
+    "here, is that of the NAME in the list below. If anything is held out or\n"
+    "disturbed, the file truth.json in the folder says what.",
     options,
     N_OPTIONS,
     "--hold, --pose-error, --tint and --drift go with the layouts blender, nerfstudio\n"
@@ -208,9 +208,9 @@ static int fill(ted4_ray_options *o)
     o->tint = o->tint < 0 ? d.tint : o->tint;
     o->drift = o->drift < 0 ? d.drift : o->drift;
     if ((o->pose_error > 0 || o->tint > 0 || o->drift > 0) && !lists)
-        return complain("errors and tints",
-                        "go with the layouts blender, nerfstudio and hypernerf: "
-                        "others hold out pictures of disturbed cameras");
+        return complain("--layout",
+                        "scenes with pose errors, tints or drift go with blender, nerfstudio and "
+                        "hypernerf only: others hold out pictures of disturbed cameras");
     return ted4_ray_fault(o) == NULL ? EXIT_FINE : complain("options", ted4_ray_fault(o));
 }
 

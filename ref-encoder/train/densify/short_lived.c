@@ -10,27 +10,36 @@
 #include "photo_votes.h"
 #include "train/model/normalise.h"
 
-/* Writes the position of each anchor, and the colour of the initial point nearest to it. */
-static void describe(const ted4_trainer *t, const float *points, float *place, uint8_t *colour)
+/* points: the initial points, normalised. Of each anchor: place, its position, and colour, that of
+ * the initial point nearest to it. */
+typedef struct {
+    ted4_trainer *trainer;
+    float *points, *place;
+    uint8_t *colour;
+} description;
+
+/* Describes one anchor. All points are looked at, so that this takes longer than reading the
+ * pictures if the points are many; anchors are shared among the threads. */
+static void describe(void *arg, size_t i)
 {
-    for (size_t i = 0; i < t->anchors.n; i++) {
-        float *p = place + 3 * i, best = INFINITY;
-        size_t at = 0;
+    const description *d = arg;
+    const ted4_trainer *t = d->trainer;
+    float *p = d->place + 3 * i, best = INFINITY;
+    size_t at = 0;
 
-        for (int k = 0; k < 3; k++)
-            p[k] = *ted4_anchor_value(&t->anchors, TED4_ROW_POSITION, i, k);
-        for (size_t n = 0; n < t->data->n_points; n++) {
-            const float x = points[3 * n] - p[0], y = points[3 * n + 1] - p[1],
-                        z = points[3 * n + 2] - p[2];
-            const float d = x * x + y * y + z * z;
+    for (int k = 0; k < 3; k++)
+        p[k] = *ted4_anchor_value(&t->anchors, TED4_ROW_POSITION, i, k);
+    for (size_t n = 0; n < t->data->n_points; n++) {
+        const float x = d->points[3 * n] - p[0], y = d->points[3 * n + 1] - p[1],
+                    z = d->points[3 * n + 2] - p[2];
+        const float square = x * x + y * y + z * z;
 
-            if (d < best) {
-                best = d;
-                at = n;
-            }
+        if (square < best) {
+            best = square;
+            at = n;
         }
-        memcpy(colour + 3 * i, t->data->point_rgb + 3 * at, 3);
     }
+    memcpy(d->colour + 3 * i, t->data->point_rgb + 3 * at, 3);
 }
 
 int ted4_is_short_lived(const ted4_trainer *t, size_t i)
@@ -67,23 +76,22 @@ int ted4_init_short_lived(ted4_trainer *t, size_t most)
     if (t->layout.first[TED4_TAU] < 0 || t->data->n_frames < 2 || t->data->random_points ||
         t->data->point_rgb == NULL || ted4_most_cameras(t->data) < TED4_CAMERAS_NEEDED)
         return 0;
-    float *points = malloc((t->data->n_points + 1) * 3 * sizeof *points);
-    float *place = malloc((n + 1) * 3 * sizeof *place);
-    uint8_t *colour = malloc(3 * n + 1);
+    description d = { t, malloc((t->data->n_points + 1) * 3 * sizeof *d.points),
+                      malloc((n + 1) * 3 * sizeof *d.place), malloc(3 * n + 1) };
 
-    bad = points == NULL || place == NULL || colour == NULL;
+    bad = d.points == NULL || d.place == NULL || d.colour == NULL;
     if (bad) {
         ted4_trainer_fail(t, "no memory to look for transients");
     } else {
         for (size_t i = 0; i < t->data->n_points; i++)
-            ted4_normalise_point(&t->layout.head, t->data->points + 3 * i, points + 3 * i);
-        describe(t, points, place, colour);
+            ted4_normalise_point(&t->layout.head, t->data->points + 3 * i, d.points + 3 * i);
+        ted4_parallel_for(t->parallel, n, describe, &d);
     }
     for (size_t first = 0; !bad && first < n; first += most)
-        bad = set_spans(t, first, place + 3 * first, colour + 3 * first,
+        bad = set_spans(t, first, d.place + 3 * first, d.colour + 3 * first,
                         n - first < most ? n - first : most) != 0;
-    free(points);
-    free(place);
-    free(colour);
+    free(d.points);
+    free(d.place);
+    free(d.colour);
     return bad ? -1 : 0;
 }

@@ -152,6 +152,8 @@ typedef struct {
 
     ted4_onlooker onlooker;
     ted4_message message; /* why the last call failed */
+    /* 1: the last ted4_export_scene failed because rate had removed every Gaussian */
+    int is_empty;
 } ted4_trainer;
 
 /* ---- memory.c ---- */

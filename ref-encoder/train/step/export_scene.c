@@ -144,6 +144,7 @@ int ted4_export_scene(ted4_trainer *t, ted4_scene **scene)
     size_t n;
 
     *scene = NULL;
+    t->is_empty = 0;
     if (ted4_trainer_check(t, 1) != 0 || settle(t) != 0)
         return -1;
     keep = malloc((t->anchors.n + 1) * sizeof *keep);
@@ -153,10 +154,14 @@ int ted4_export_scene(ted4_trainer *t, ted4_scene **scene)
     }
     h = t->layout.head;
     h.n_anchors = (uint32_t)n;
-    if (n == 0 || (*scene = ted4_scene_new(&h, NULL)) == NULL) {
+    t->is_empty = n == 0;
+    if (t->is_empty || (*scene = ted4_scene_new(&h, NULL)) == NULL) {
         free(keep);
-        return ted4_trainer_fail(t, h.n_anchors == 0 ? "nothing is left to encode"
-                                                     : "no memory to export");
+        return t->is_empty ? ted4_trainer_fail(t,
+                                               "nothing is left to encode: at lambda %g, every "
+                                               "Gaussian costs more than it contributes",
+                                               t->opt.lambda)
+                           : ted4_trainer_fail(t, "no memory to export");
     }
 
     ted4_scene *s = *scene;
