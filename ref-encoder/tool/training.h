@@ -57,8 +57,9 @@ void ted4_coded_free(ted4_coded *c);
 /* Repeats stage 2 with different values of lambda, in search of the largest file that does not
  * exceed request->target_size. *c is that file, or the smallest one if all exceed it. The search is
  * the same for the same scene, options and seed. A lambda at which no Gaussian is left bounds it.
- * If a trial fails for another reason after one has given a file, the search ends early, with a
- * warning; of several processes, all fail. Returns 0, or -1 with t->why filled. See target.c. */
+ * It ends early, with a warning, if a trial fails for another reason after one has found a file
+ * that fits; of several processes, all fail then. Returns 0, or -1 with t->why filled. See
+ * target.c. */
 int ted4_training_target(ted4_training *t, ted4_coded *c);
 
 /* ---- shared by training.c, target.c and look.c ---- */
