@@ -18,6 +18,10 @@
  * one of another machine or container that writes to the same folder. */
 enum { MOST_NAMES = 100 };
 
+/* Bytes of a name that its temporary name begins with: with a number and an ending, they stay below
+ * the 255 that file systems allow. */
+enum { MOST_LETTERS = 200 };
+
 /* n: what snprintf gave for a buffer of TED4_PATH_SIZE. Returns 0, or -1 with errno set if it is
  * too small. */
 static int fits(int n)
@@ -28,13 +32,32 @@ static int fits(int n)
     return -1;
 }
 
+/* Returns how many bytes of path its temporary name begins with: the folder, and what is kept of
+ * the name, which is not cut inside a letter of UTF-8. */
+static int kept_of(const char *path)
+{
+    const char *const slash = strrchr(path, '/');
+    const size_t folder = slash != NULL ? (size_t)(slash + 1 - path) : 0;
+    size_t n = strlen(path + folder);
+
+    if (n > MOST_LETTERS) {
+        n = MOST_LETTERS;
+        while (n > 1 && ((unsigned char)path[folder + n] & 0xc0) == 0x80)
+            n--;
+    }
+    return (int)(folder + n);
+}
+
 /* Makes a temporary name for path: the first one, or another if number is above 0. Returns 0, or -1
  * with errno set if it is too long. */
 static int name_temporary(char out[TED4_PATH_SIZE], const char *path, int number)
 {
-    return fits(number == 0 ? snprintf(out, TED4_PATH_SIZE, "%s.%ld.part", path, (long)getpid())
-                            : snprintf(out, TED4_PATH_SIZE, "%s.%ld-%d.part", path, (long)getpid(),
-                                       number));
+    const long process = (long)getpid();
+    const int n = kept_of(path);
+
+    return fits(number == 0
+                    ? snprintf(out, TED4_PATH_SIZE, "%.*s.%ld.part", n, path, process)
+                    : snprintf(out, TED4_PATH_SIZE, "%.*s.%ld-%d.part", n, path, process, number));
 }
 
 /* Finds the place of a file: where links at path lead if there is something, otherwise path.

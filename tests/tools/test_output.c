@@ -2,6 +2,8 @@
  * temporary file, stays.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <errno.h>
+#include <limits.h>
+#include <stddef.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -38,6 +40,28 @@ static void test_name_taken(void **state)
     fclose(f);
     assert_string_equal(text, "theirs");
     assert_int_equal(remove(path) | remove(other) | remove(taken), 0);
+}
+
+/* A name as long as a file may have, of letters of three bytes. The temporary one is whole letters
+ * too. */
+static void test_long_name(void **state)
+{
+    char path[600];
+    int n = snprintf(path, sizeof path, "%s/", folder);
+    ted4_output o;
+    struct stat s;
+
+    (void)state;
+    for (int i = 0; i < NAME_MAX / 3; i++)
+        n += snprintf(path + n, sizeof path - (size_t)n, "\xe5\xad\x97");
+    assert_int_equal(ted4_output_open(&o, path), 0);
+
+    const char *const end = strchr(o.temporary + strlen(folder), '.');
+
+    assert_int_equal((size_t)(end - o.temporary - (ptrdiff_t)strlen(folder) - 1) % 3, 0);
+    assert_int_equal(ted4_output_close(&o), 0);
+    assert_int_equal(stat(path, &s), 0);
+    assert_int_equal(remove(path), 0);
 }
 
 /* A pipe, as a device or a folder, is not replaced by a file. */
@@ -227,10 +251,11 @@ static int folder_remove(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(test_name_taken),
-                                        cmocka_unit_test(test_no_file), cmocka_unit_test(test_new),
-                                        cmocka_unit_test(test_kept_beside),
-                                        cmocka_unit_test(test_keep) };
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_name_taken),  cmocka_unit_test(test_long_name),
+        cmocka_unit_test(test_no_file),     cmocka_unit_test(test_new),
+        cmocka_unit_test(test_kept_beside), cmocka_unit_test(test_keep)
+    };
 
     return cmocka_run_group_tests(tests, folder_make, folder_remove);
 }
