@@ -114,24 +114,37 @@ find_places() {
     case $where in *@*) judge=$data/${where#*@} ;; esac
     case $where in
     own:*)  folder=$work/scenes/${where#own:}-$own_version ;;
+    bare:*) folder=$work/scenes/${where#bare:}-bare ;;
     *)      folder=$data/${where%@*} ;;
     esac
     [ -z "$share" ] ||
         stage1_file=$work/stage1-$sources_now/$(echo "${where%@*} $stage1" | key_hash).stage1
 }
 
-# Own scenes are made: own:NAME+size=96x64 by ted4scene NAME --size 96x64. 2: another run is making
-# it.
+# Links in folder $1 to all that the scene $2 has but its initial points.
+link_bare() {
+    mkdir "$1" || return
+    for f in "$(cd "$2" && pwd)"/*; do
+        case $f in */points3d.ply) continue ;; esac
+        ln -s "$f" "$1" || return
+    done
+}
+
+# Own scenes are made: own:NAME+size=96x64 by ted4scene NAME --size 96x64, bare:NAME of links. 2:
+# another run is making it.
 make_scene() {
-    case $where in own:*) ;; *) return 0 ;; esac
+    case $where in own:*|bare:*) ;; *) return 0 ;; esac
     [ -d "$folder" ] && return 0
     mkdir -p "$work/scenes"
     exec 7>"$folder.lock"
     lock 7 || return
     [ -d "$folder" ] && return 0
     rm -rf "$folder.part"
-    run "$programs/ted4scene" $(echo "${where#own:}" | sed 's/+/ --/g; s/=/ /g') \
-        -o "$folder.part" && mv "$folder.part" "$folder"
+    case $where in
+    bare:*) link_bare "$folder.part" "$data/${where#bare:}" ;;
+    *)      run "$programs/ted4scene" $(echo "${where#own:}" | sed 's/+/ --/g; s/=/ /g') \
+                -o "$folder.part" ;;
+    esac && mv "$folder.part" "$folder"
 }
 
 # train OUT OPTIONS...: to OUT.ted4, OUT.json and OUT.jsonl, once; goes on where it was killed. What
@@ -319,7 +332,7 @@ list_shared() {
         is_there && continue
         find_places
         need=
-        case $where in own:*) [ -d "$folder" ] || need=$folder ;; esac
+        case $where in own:*|bare:*) [ -d "$folder" ] || need=$folder ;; esac
         [ -z "$stage1_file" ] || [ -s "$stage1_file" ] || need="$need $stage1_file"
         case $need in "") continue ;; esac
         case $seen in *"<$need>"*) continue ;; esac
