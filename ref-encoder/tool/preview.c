@@ -78,6 +78,7 @@ int ted4_preview_make(ted4_trainer *t, int n, ted4_preview *p)
         (void)count_bytes(scene, t->parallel, p);
         ted4_scene_free(scene);
     }
+    t->is_empty = 0; /* later steps may keep Gaussians */
 
     const int drawn = draw(t, n, p), bad = ted4_state_restore(t, &before) != 0 || drawn != 0;
 
