@@ -32,9 +32,7 @@ static int fits(int n)
     return -1;
 }
 
-/* Returns how many bytes of path its temporary name begins with: the folder, and what is kept of
- * the name, which is not cut inside a letter of UTF-8. */
-static int kept_of(const char *path)
+int ted4_output_kept(const char *path)
 {
     const char *const slash = strrchr(path, '/');
     const size_t folder = slash != NULL ? (size_t)(slash + 1 - path) : 0;
@@ -53,7 +51,7 @@ static int kept_of(const char *path)
 static int name_temporary(char out[TED4_PATH_SIZE], const char *path, int number)
 {
     const long process = (long)getpid();
-    const int n = kept_of(path);
+    const int n = ted4_output_kept(path);
 
     return fits(number == 0
                     ? snprintf(out, TED4_PATH_SIZE, "%.*s.%ld.part", n, path, process)
@@ -95,6 +93,11 @@ static FILE *create(const char *temporary, int replaces, mode_t mode)
  * -1 with errno set. */
 static int open_temporary(ted4_output *o, int replaces, mode_t mode)
 {
+    struct stat there;
+
+    /* Otherwise, a name that is too long would be noticed only when the file is complete. */
+    if (lstat(o->path, &there) != 0 && errno == ENAMETOOLONG)
+        return -1;
     errno = EEXIST;
     for (int i = 0; i < MOST_NAMES && errno == EEXIST; i++) {
         if (name_temporary(o->temporary, o->path, i) != 0)

@@ -19,6 +19,10 @@ typedef struct {
 /* Returns 1 if there is something at path, be it a link that leads nowhere. */
 int ted4_output_exists(const char *path);
 
+/* Returns how many bytes of path a name beside it can begin with and stay as long as file systems
+ * allow: the folder, and up to 200 bytes of the name, which is not cut inside a letter of UTF-8. */
+int ted4_output_kept(const char *path);
+
 /* Opens a temporary file next to path; where path is a link to a file, next to that file. It has
  * the mode of the file that it will replace. Returns 0, or -1 with errno set: EISDIR or EOPNOTSUPP
  * where path is a folder, or a device or a pipe, which a file would replace. */

@@ -72,12 +72,13 @@ static void name_beside(char out[TED4_PATH_SIZE], const char *path, int n)
 {
     const char *const suffix = strrchr(path, '.');
     const size_t stem = suffix != NULL ? (size_t)(suffix - path) : strlen(path);
+    const int kept = ted4_output_kept(path);
     char number[40] = "";
 
     if (n > 0)
         snprintf(number, sizeof number, "-%d", n);
-    snprintf(out, TED4_PATH_SIZE, "%.*s.%ld%s%s", (int)stem, path, (long)getpid(), number,
-             path + stem);
+    snprintf(out, TED4_PATH_SIZE, "%.*s.%ld%s%s", (int)stem < kept ? (int)stem : kept, path,
+             (long)getpid(), number, path + stem);
 }
 
 int ted4_file_keep(const char *path, int force, const void *data, size_t size, char *why,

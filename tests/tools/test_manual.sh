@@ -107,7 +107,7 @@ else
 fi
 
 if has file; then
-    expect magic 0 "TED4 dynamic scene of 3D Gaussians, version 1.0, level 1" \
+    expect magic 0 "TED4 dynamic scene of 3D Gaussians, major version 1, minor 0, profile Main, level 1" \
         file -m tools/ted4.magic "$vector"
     expect magic_type 0 model/vnd.ted4 file -m tools/ted4.magic --mime-type "$vector"
     if file -m tools/ted4.magic README.md | grep -q Gaussians; then fail magic_other README.md

@@ -43,7 +43,7 @@ static void test_name_taken(void **state)
 }
 
 /* A name as long as a file may have, of letters of three bytes. The temporary one is whole letters
- * too. */
+ * too. A longer name is refused at once. */
 static void test_long_name(void **state)
 {
     char path[600];
@@ -62,6 +62,11 @@ static void test_long_name(void **state)
     assert_int_equal(ted4_output_close(&o), 0);
     assert_int_equal(stat(path, &s), 0);
     assert_int_equal(remove(path), 0);
+    strcat(path, "x");
+    assert_int_equal(ted4_output_open(&o, path), -1);
+    assert_int_equal(errno, ENAMETOOLONG);
+    assert_int_equal(ted4_output_open_new(&o, path), -1);
+    assert_int_equal(errno, ENAMETOOLONG);
 }
 
 /* A pipe, as a device or a folder, is not replaced by a file. */
