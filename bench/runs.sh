@@ -121,12 +121,20 @@ find_places() {
         stage1_file=$work/stage1-$sources_now/$(echo "${where%@*} $stage1" | key_hash).stage1
 }
 
-# Links in folder $1 to all that the scene $2 has but its initial points.
+# Links in folder $1 to all that the scene $2 has but its initial points, of which its transforms
+# do not speak either.
 link_bare() {
     mkdir "$1" || return
     for f in "$(cd "$2" && pwd)"/*; do
-        case $f in */points3d.ply) continue ;; esac
-        ln -s "$f" "$1" || return
+        case $f in
+        */points3d.ply) ;;
+        */transforms*.json)
+            python3 -c 'import json, sys
+scene = json.load(sys.stdin)
+scene.pop("ply_file_path", None)
+json.dump(scene, sys.stdout)' <"$f" >"$1/${f##*/}" || return ;;
+        *) ln -s "$f" "$1" || return ;;
+        esac
     done
 }
 
