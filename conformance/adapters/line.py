@@ -98,7 +98,7 @@ def main(arguments):
     try:
         reply = (capabilities(command) if arguments[at] == "--ted4-capabilities"
                  else run(command, arguments[at + 1], arguments[at + 2:]))
-    except (NoAnswer, ValueError, IndexError) as why:
+    except (NoAnswer, OSError, ValueError, IndexError) as why:
         print("line.py: no answer: %s" % why, file=sys.stderr)
         return 1
     print(json.dumps(reply))

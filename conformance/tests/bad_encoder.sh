@@ -11,6 +11,8 @@ done
 suite=conformance/vectors
 case $way in
 no-file) ;;
+pipe) mkfifo "$out" ;;
+folder) mkdir "$out" ;;
 broken) head -c 200 "$MADE" >"$out" ;;
 level-too-low)
     file=$suite/valid/levels/LVL-frames-65.ted4

@@ -35,13 +35,18 @@ void class_t_close(class_t *c)
     free(c);
 }
 
+/* Whether the query's time is one (R-REC-002). */
+static int in_range(const class_t_query *q)
+{
+    return q->den >= 1 && q->den < 1u << 24 && q->num <= q->den;
+}
+
 /* All four evaluations; t is to be freed with tol_free in any case. 1, or 0: class X has no result.
  */
 static int evaluate(const class_t *c, const class_t_query *q, tol_reference *t)
 {
     memset(t, 0, sizeof *t);
-    return q->den >= 1 && q->den < 1u << 24 && q->num <= q->den &&
-           tol_make(t, &c->model.p.s, q->num, q->den, q->camera);
+    return in_range(q) && tol_make(t, &c->model.p.s, q->num, q->den, q->camera);
 }
 
 int class_t_bounds(const class_t *c, const class_t_query *q, class_t_thresholds *out)
@@ -72,6 +77,8 @@ const char *class_t_judge(const class_t *c, const class_t_query *q, const uint8_
     tol_reference t;
     const char *verdict = "kept";
 
+    if (!in_range(q))
+        return records == NULL ? verdict : "out of range";
     if (evaluate(c, q, &t)) {
         if (records == NULL || size != 14 * sizeof(float) * t.n) {
             verdict = records == NULL ? "missing" : "count";

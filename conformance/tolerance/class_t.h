@@ -33,7 +33,8 @@ int class_t_bounds(const class_t *c, const class_t_query *q, class_t_thresholds 
 
 /* What is said of the T5 string that a decoder gives for a query (J.7), NULL when it gives none:
  * "kept", or the first thing that is wrong: "missing", "count", "not finite", or the name of a
- * group. Where class X has no result everything is kept (R-TOL-006). */
+ * group. Where class X has no result because a number is not finite, everything is kept
+ * (R-TOL-006). For a time out of range there must be no records: "out of range". */
 const char *class_t_judge(const class_t *c, const class_t_query *q, const uint8_t *records,
                           size_t size);
 

@@ -5,6 +5,7 @@
 
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 #include "judge.h"
 #include "scratch.h"
 #include "ted4.h"
@@ -43,10 +44,11 @@ static void judge_hash(const json_t *answer, const ted4_info *info, int *n)
 static void judge_file(const json_t *answer, const char *path, int *n, size_t *size, int *level)
 {
     conf_bytes file = { NULL, 0, 0 };
+    struct stat made;
     ted4_scene *s;
     ted4_info info;
 
-    if (!conf_read(path, &file)) {
+    if (lstat(path, &made) != 0 || !S_ISREG(made.st_mode) || !conf_read(path, &file)) {
         wrong(n, "there is no file", "");
         return;
     }

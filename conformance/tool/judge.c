@@ -51,7 +51,7 @@ json_t *conf_judge_document(const conf_process *p, conf_verdict *v)
     o = json_loadb((const char *)p->answer.data, p->answer.size, JSON_REJECT_DUPLICATES, &why);
     if (!json_is_object(o)) {
         say(v, CONF_NO_ANSWER, "stdout is not one JSON object and nothing else: %s: %.60s",
-            why.text, (const char *)p->answer.data);
+            o == NULL ? why.text : "not an object", (const char *)p->answer.data);
         json_decref(o);
         return NULL;
     }
@@ -76,41 +76,77 @@ static const char *text_of(const json_t *o, const char *key)
     return s != NULL ? s : "";
 }
 
-/* Returns the first member that schema/capabilities.schema.json requires and c lacks, or has with
- * another type; NULL if there is none. */
-static const char *capability_missing(const json_t *c)
+static int is_one_of(const char *text, const char *const *known, size_t n)
 {
-    static const char *const text[] = { "name", "version", "spec" }, *const list[] = {
-        "profiles", "tiers", "declines", "knobs"
-    };
-    const json_t *const class = json_object_get(c, "class");
+    for (size_t i = 0; i < n; i++)
+        if (strcmp(text, known[i]) == 0)
+            return 1;
+    return 0;
+}
+
+/* Returns 1 if o is an array of texts, all of which are known; n = 0: any texts. */
+static int is_list_of(const json_t *o, const char *const *known, size_t n)
+{
+    for (size_t i = 0; i < json_array_size(o); i++) {
+        const char *const s = json_string_value(json_array_get(o, i));
+
+        if (s == NULL || (n > 0 && !is_one_of(s, known, n)))
+            return 0;
+    }
+    return json_is_array(o);
+}
+
+/* Levels that can be claimed: 1 to 4, and 31 (R-DEC-007). */
+static int is_level(const json_t *o)
+{
+    const json_int_t level = json_integer_value(o); /* 0 if it is no integer */
+
+    return (level >= 1 && level <= 4) || level == 31;
+}
+
+/* Returns the first member that schema/capabilities.schema.json requires and c lacks, or that is
+ * not what the schema says; NULL if there is none. */
+static const char *capability_wrong(const json_t *c)
+{
+    static const char *const text[] = { "name", "version", "spec" };
+    static const char *const profile[] = { "Main", "Compact" };
+    static const char *const tier[] = { "T0", "T1", "T2", "T3", "T4", "T5" };
+    static const char *const class[] = { "X", "T" };
+    const json_t *const lenient = json_object_get(c, "lenient");
 
     for (size_t i = 0; i < sizeof text / sizeof *text; i++)
         if (!json_is_string(json_object_get(c, text[i])))
             return text[i];
-    for (size_t i = 0; i < sizeof list / sizeof *list; i++)
-        if (!json_is_array(json_object_get(c, list[i])))
-            return list[i];
-    if (!json_is_integer(json_object_get(c, "max_level")))
+    if (!is_list_of(json_object_get(c, "profiles"), profile, sizeof profile / sizeof *profile))
+        return "profiles";
+    if (!is_level(json_object_get(c, "max_level")))
         return "max_level";
+    if (!is_list_of(json_object_get(c, "tiers"), tier, sizeof tier / sizeof *tier))
+        return "tiers";
+    if (!json_is_null(json_object_get(c, "class")) &&
+        !is_one_of(text_of(c, "class"), class, sizeof class / sizeof *class))
+        return "class";
     if (!json_is_boolean(json_object_get(c, "strict")))
         return "strict";
-    return json_is_null(class) || strcmp(text_of(c, "class"), "X") == 0 ||
-                   strcmp(text_of(c, "class"), "T") == 0
-               ? NULL
-               : "class";
+    if (lenient != NULL && !json_is_boolean(lenient))
+        return "lenient";
+    if (!is_list_of(json_object_get(c, "declines"), NULL, 0))
+        return "declines";
+    return is_list_of(json_object_get(c, "knobs"), NULL, 0) ? NULL : "knobs";
 }
 
 int conf_judge_capabilities(const json_t *c, conf_verdict *v)
 {
-    const char *const missing = capability_missing(c);
+    const char *const wrong = capability_wrong(c);
 
     if (json_integer_value(json_object_get(c, "protocol")) != 1)
         say(v, CONF_NO_ANSWER, "capabilities: protocol is not 1");
-    else if (missing != NULL)
-        say(v, CONF_NO_ANSWER, "capabilities: %s is missing, or not what it has to be", missing);
+    else if (wrong != NULL)
+        say(v, CONF_NO_ANSWER, "capabilities: %s is missing, or not what it has to be", wrong);
     else if (text_of(c, "name")[0] == '\0')
         say(v, CONF_NO_ANSWER, "capabilities: the name is empty");
+    else if (!holds(json_object_get(c, "profiles"), "Main"))
+        say(v, CONF_NO_ANSWER, "capabilities: profiles lacks Main, which every decoder has (3)");
     else if (json_array_size(json_object_get(c, "tiers")) == 0)
         say(v, CONF_NO_ANSWER, "capabilities: no tiers");
     else if (json_is_string(json_object_get(c, "class")) &&
@@ -131,6 +167,11 @@ const char *conf_judge_lacks(const json_t *c)
     return NULL;
 }
 
+int conf_has_knob(const json_t *capabilities, const char *name)
+{
+    return holds(json_object_get(capabilities, "knobs"), name);
+}
+
 /* Every decoder has to refuse invalid files. */
 int conf_judge_declines(const json_t *capabilities, const json_t *d)
 {
@@ -147,7 +188,7 @@ int conf_judge_declines(const json_t *capabilities, const json_t *d)
                   json_string_value(json_array_get(features, i))))
             return 1;
     json_object_foreach((json_t *)(uintptr_t)knobs, knob,
-                        value) if (!holds(json_object_get(capabilities, "knobs"), knob)) return 1;
+                        value) if (!conf_has_knob(capabilities, knob)) return 1;
     return 0;
 }
 
@@ -164,8 +205,11 @@ int conf_judge_lenient(const json_t *capabilities)
 int conf_same_hash(const json_t *want, const json_t *got)
 {
     static const char *const name[] = { "xxh3", "sha256" };
+    const json_t *const bytes = json_object_get(got, "bytes");
     int n = 0;
 
+    if (bytes != NULL && !json_equal(json_object_get(want, "bytes"), bytes))
+        return 0;
     for (size_t i = 0; i < 2; i++)
         if (json_object_get(got, name[i]) != NULL) {
             if (!json_equal(json_object_get(want, name[i]), json_object_get(got, name[i])))
@@ -184,11 +228,15 @@ static int judge_queries(const json_t *want, const json_t *got, conf_verdict *v)
     }
     for (size_t i = 0; i < json_array_size(want); i++) {
         const json_t *const w = json_array_get(want, i), *const g = json_array_get(got, i);
-        const char *const error = text_of(w, "error");
+        const json_t *const error = json_object_get(w, "error"), *const found =
+                                                                     json_object_get(g, "error");
+        const char *const why = error != NULL && !json_equal(error, found) ? "should have no result"
+                                : error == NULL && found != NULL           ? "should have a result"
+                                : error == NULL && !conf_same_hash(w, g)   ? "other records"
+                                                                           : NULL;
 
-        if (error[0] != '\0' ? strcmp(error, text_of(g, "error")) != 0 : !conf_same_hash(w, g)) {
-            say(v, CONF_FAIL, "T5: query %zu: %s", i,
-                error[0] != '\0' ? "should have no result" : "other records");
+        if (why != NULL) {
+            say(v, CONF_FAIL, "T5: query %zu: %s", i, why);
             return 0;
         }
     }
@@ -213,7 +261,8 @@ static void judge_tiers(const json_t *capabilities, const json_t *want, const js
             if (!judge_queries(w, g, v))
                 return;
         } else if (!conf_same_hash(w, g)) {
-            say(v, CONF_FAIL, "%s: %s", name, g == NULL ? "missing" : "another hash, or none");
+            say(v, CONF_FAIL, "%s: %s", name,
+                g == NULL ? "missing" : "another hash or size, or no hash");
             return;
         }
     }
@@ -251,53 +300,81 @@ static int has_profile(const json_t *capabilities, const char *profile)
     return profiles == NULL || holds(profiles, profile);
 }
 
+static int is_limit(const json_t *answer)
+{
+    return strcmp(text_of(answer, "result"), "limit") == 0 &&
+           strncmp(text_of(answer, "error"), "limit.", 6) == 0;
+}
+
+/* Judges an answer that should refuse the file of a profile that the decoder does not have. */
+static void judge_other_profile(const json_t *answer, conf_verdict *v)
+{
+    if (strcmp(text_of(answer, "result"), "unsupported") == 0 &&
+        strcmp(text_of(answer, "error"), "unsupported.profile") == 0 &&
+        json_integer_value(json_object_get(answer, "offset")) == PROFILE_AT)
+        say(v, CONF_DECLINED, "of a profile that the decoder does not have");
+    else
+        say(v, CONF_FAIL, "should be unsupported.profile at %d, as the decoder claims no such one",
+            PROFILE_AT);
+}
+
+static void say_other(conf_verdict *v, const json_t *expect, const json_t *answer)
+{
+    const char *const want = text_of(expect, "error"), *const got = text_of(answer, "error");
+
+    say(v, CONF_FAIL, "should be %s%s%s, is %s%s%s", text_of(expect, "result"),
+        want[0] != '\0' ? " " : "", want, text_of(answer, "result"), got[0] != '\0' ? " " : "",
+        got);
+}
+
+/* Judges the error of an answer with the right result, which is not valid. */
+static void judge_error(const json_t *d, const json_t *answer, conf_verdict *v)
+{
+    const json_t *const expect = json_object_get(d, "expect"), *const offset = json_object_get(
+                                                                   expect, "offset");
+    const json_t *const at = json_object_get(answer, "offset");
+    const char *const error = text_of(expect, "error");
+    /* R-LVL-008 prescribes which limit is met under max_work. */
+    const int any = conf_expects(d, "limit") &&
+                    json_object_get(json_object_get(d, "knobs"), "max_work") == NULL;
+
+    if (any ? !is_limit(answer) : strcmp(error, text_of(answer, "error")) != 0)
+        say(v, CONF_FAIL, "should be %s, is %s", error, text_of(answer, "error"));
+    else if (offset != NULL && !json_is_integer(at))
+        say(v, CONF_FAIL, "%s: the offset is missing, or no integer", error);
+    else if (offset != NULL && !json_equal(offset, at))
+        say(v, CONF_FAIL, "%s at %lld, should be at %lld", error, (long long)json_integer_value(at),
+            (long long)json_integer_value(offset));
+    else if (json_object_get(answer, "tiers") != NULL)
+        say(v, CONF_FAIL, "delivers tiers of a file that is not valid (R-DEC-003)");
+    else
+        say(v, CONF_PASS, "%s", "");
+}
+
 void conf_judge(const json_t *capabilities, const json_t *d, const json_t *answer, conf_verdict *v)
 {
     const json_t *const expect = json_object_get(d, "expect");
     const char *const want = text_of(expect, "result"), *const got = text_of(answer, "result");
-    const json_t *const offset = json_object_get(expect, "offset");
-    /* R-LVL-008 prescribes which limit is met under max_work. */
-    const int any = strcmp(want, "limit") == 0 &&
-                    json_object_get(json_object_get(d, "knobs"), "max_work") == NULL;
 
-    if (holds(json_object_get(expect, "also_ok"), got)) {
+    if (!has_profile(capabilities, text_of(d, "profile"))) {
+        judge_other_profile(answer, v);
+    } else if (strcmp(got, "limit") == 0 && !is_limit(answer)) {
+        say(v, CONF_FAIL, "limit, but the error \"%.40s\" is no limit", text_of(answer, "error"));
+    } else if (holds(json_object_get(expect, "also_ok"), got)) {
         say(v, CONF_PASS, "%s, which the specification allows too", got);
-        return;
-    }
-    if (strcmp(got, "unsupported") == 0 && !has_profile(capabilities, text_of(d, "profile")) &&
-        strcmp(text_of(answer, "error"), "unsupported.profile") == 0 &&
-        json_integer_value(json_object_get(answer, "offset")) == PROFILE_AT) {
-        say(v, CONF_DECLINED, "of a profile that the decoder does not have");
-        return;
-    }
-    if (strcmp(want, "limit") != 0 && strcmp(got, "limit") == 0 && !is_of_pass_1(expect) &&
-        json_integer_value(json_object_get(d, "level")) >
-            json_integer_value(json_object_get(capabilities, "max_level"))) {
+    } else if (strcmp(want, "limit") != 0 && is_limit(answer) && !is_of_pass_1(expect) &&
+               json_integer_value(json_object_get(d, "level")) >
+                   json_integer_value(json_object_get(capabilities, "max_level"))) {
         say(v, CONF_DECLINED, "above the decoder's greatest level");
-        return;
-    }
-    if (strcmp(want, got) != 0) {
-        say(v, CONF_FAIL, "should be %s %s, is %s %s", want, text_of(expect, "error"), got,
-            text_of(answer, "error"));
-        return;
-    }
-    if (strcmp(want, "valid") == 0) {
+    } else if (got[0] == '\0') {
+        say(v, CONF_FAIL, "the result is missing, or no text");
+    } else if (strcmp(want, got) != 0) {
+        say_other(v, expect, answer);
+    } else if (strcmp(want, "valid") == 0) {
         judge_tiers(capabilities, json_object_get(d, "tiers"), json_object_get(answer, "tiers"), v);
-        return;
+    } else {
+        judge_error(d, answer, v);
     }
-    if (any ? strncmp(text_of(answer, "error"), "limit.", 6) != 0
-            : strcmp(text_of(expect, "error"), text_of(answer, "error")) != 0) {
-        say(v, CONF_FAIL, "should be %s, is %s", text_of(expect, "error"),
-            text_of(answer, "error"));
-        return;
-    }
-    if (offset != NULL && !json_equal(offset, json_object_get(answer, "offset"))) {
-        say(v, CONF_FAIL, "%s at %lld, should be at %lld", text_of(expect, "error"),
-            (long long)json_integer_value(json_object_get(answer, "offset")),
-            (long long)json_integer_value(offset));
-        return;
-    }
-    say(v, CONF_PASS, "%s", "");
 }
 
 void conf_judge_salvage(const json_t *capabilities, const json_t *d, const json_t *answer,

@@ -33,13 +33,16 @@ int conf_judge_capabilities(const json_t *capabilities, conf_verdict *v);
 /* Returns the first of T0 to T4 that the decoder does not list, or NULL. A strict decoder must
  * support all of them (R-DMP-070). */
 const char *conf_judge_lacks(const json_t *capabilities);
+/* Returns 1 if the decoder accepts that knob. */
+int conf_has_knob(const json_t *capabilities, const char *name);
 /* Returns 1 if the decoder may skip this vector. */
 int conf_judge_declines(const json_t *capabilities, const json_t *descriptor);
 /* Returns 1 if the descriptor expects that result. */
 int conf_expects(const json_t *descriptor, const char *result);
 /* Returns 1 if the decoder claims lenient mode (spec 3.3). */
 int conf_judge_lenient(const json_t *capabilities);
-/* Returns 1 if got contains at least one hash and all of its hashes equal those of want. */
+/* Returns 1 if got contains at least one hash, and all of its hashes and its number of bytes, if it
+ * has one, equal those of want. */
 int conf_same_hash(const json_t *want, const json_t *got);
 /* Judges an answer by its descriptor. T5 is judged for class X only (judge_t.h judges class T). */
 void conf_judge(const json_t *capabilities, const json_t *descriptor, const json_t *answer,

@@ -159,6 +159,8 @@ static void start(runner *w, slot *s)
     }
     json_object_foreach(knobs, name, value)
     {
+        if (!conf_has_knob(w->r->capabilities, name))
+            continue; /* an invalid file is refused without the knob, too */
         snprintf(knob, sizeof knob, "%s=%lld", name, (long long)json_integer_value(value));
         argv[n++] = "--knob";
         argv[n++] = knob;
@@ -257,6 +259,9 @@ static void judge(runner *w, const slot *s, const json_t *answer, conf_verdict *
     if (v->outcome != CONF_PASS && s->run == RUN_SECOND)
         snprintf(v->reason, sizeof v->reason, "%s",
                  lenient(w, s) ? "lenient mode gave another answer" : "two runs gave two answers");
+    if (v->outcome == CONF_PASS && s->run == RUN_FIRST &&
+        json_is_object(json_object_get(answer, "salvage")))
+        *v = (conf_verdict) { CONF_FAIL, "salvages something in strict mode (R-DEC-003)" };
     if (v->outcome == CONF_PASS && s->run == RUN_LENIENT)
         conf_judge_salvage(w->r->capabilities, d, answer, v);
     if (v->outcome == CONF_PASS && conf_class_t_asked(w->r->capabilities, d)) {
@@ -375,7 +380,7 @@ static int as_published(const json_t *listed, const conf_entry *e)
 static const json_t *listed_as(const json_t *list, const char *id)
 {
     for (size_t i = 0; i < json_array_size(list); i++)
-        if (strcmp(json_string_value(json_object_get(json_array_get(list, i), "id")), id) == 0)
+        if (strcmp(listed_text(json_array_get(list, i), "id"), id) == 0)
             return json_array_get(list, i);
     return NULL;
 }
@@ -383,7 +388,7 @@ static const json_t *listed_as(const json_t *list, const char *id)
 static void add_missing(conf_run_result *r, const json_t *list, size_t n_found)
 {
     for (size_t i = 0; i < json_array_size(list); i++) {
-        const char *const id = json_string_value(json_object_get(json_array_get(list, i), "id"));
+        const char *const id = listed_text(json_array_get(list, i), "id");
         size_t j = 0;
 
         while (j < n_found && strcmp(r->entry[j].id, id) != 0)
@@ -403,14 +408,18 @@ static void add_missing(conf_run_result *r, const json_t *list, size_t n_found)
 static void hold_to_manifest(conf_run_result *r)
 {
     char path[CONF_PATH];
+    json_error_t why;
     json_t *manifest;
     const json_t *list;
 
     conf_path(path, "%s/SUITE.json", r->options->suite);
-    manifest = json_load_file(path, 0, NULL);
+    manifest = json_load_file(path, 0, &why);
     if (manifest == NULL)
-        conf_die("%s: no manifest", path);
+        conf_die("%s: line %d: %s", path, why.line, why.text);
     list = json_object_get(manifest, "vector");
+    for (size_t i = 0; i < json_array_size(list); i++)
+        if (listed_text(json_array_get(list, i), "id")[0] == '\0')
+            conf_die("%s: vector %zu has no id", path, i);
     for (size_t i = 0; i < r->n; i++) {
         const json_t *const listed = listed_as(list, r->entry[i].id);
 
@@ -425,6 +434,19 @@ static void hold_to_manifest(conf_run_result *r)
     json_decref(manifest);
 }
 
+/* Says why the decoder does not conform, if the reason is not a vector. */
+static void give_reason(conf_run_result *r)
+{
+    const char *const lacks = conf_judge_lacks(r->capabilities);
+
+    if (r->capabilities == NULL)
+        snprintf(r->reason, sizeof r->reason, "%s", r->handshake.reason);
+    else if (r->valid_passed == 0)
+        snprintf(r->reason, sizeof r->reason, "no valid stream decoded");
+    else if (lacks != NULL)
+        snprintf(r->reason, sizeof r->reason, "%s is not claimed (R-DMP-070)", lacks);
+}
+
 static void sum_up(conf_run_result *r)
 {
     for (size_t i = 0; i < r->n; i++) {
@@ -432,42 +454,37 @@ static void sum_up(conf_run_result *r)
         r->valid_passed += r->verdict[i].outcome == CONF_PASS &&
                            conf_expects(r->entry[i].descriptor, "valid");
     }
-    r->passed = r->capabilities != NULL &&
-                r->count[CONF_FAIL] + r->count[CONF_NO_ANSWER] + r->count[CONF_MISSING] == 0 &&
-                r->valid_passed > 0 && conf_judge_lacks(r->capabilities) == NULL;
+    give_reason(r);
+    r->passed = r->reason[0] == '\0' &&
+                r->count[CONF_FAIL] + r->count[CONF_NO_ANSWER] + r->count[CONF_MISSING] == 0;
 }
 
-/* Returns why the decoder does not conform, if the reason is not a vector. */
-static const char *reason(const conf_run_result *r)
+/* Ends the program if a report cannot be written, before a run of minutes would be in vain. */
+static void try_reports(const conf_run_options *o)
 {
-    static char text[80];
+    const char *const path[] = { o->json, o->junit, o->html };
 
-    if (r->capabilities == NULL)
-        return r->handshake.reason;
-    if (r->valid_passed == 0)
-        return "does not conform: no valid stream decoded";
-    if (conf_judge_lacks(r->capabilities) == NULL)
-        return "does not conform";
-    snprintf(text, sizeof text, "does not conform: %s is not claimed (R-DMP-070)",
-             conf_judge_lacks(r->capabilities));
-    return text;
+    for (size_t i = 0; i < sizeof path / sizeof *path; i++)
+        if (path[i] != NULL)
+            conf_write_try(path[i]);
 }
 
 static void write_reports(const conf_run_result *r)
 {
+    printf("%s: %zu passed, %zu failed, %zu without answer, %zu missing, %zu declined, %zu not "
+           "run: %s%s%s\n",
+           r->capabilities != NULL ? json_string_value(json_object_get(r->capabilities, "name"))
+                                   : r->options->decoder,
+           r->count[CONF_PASS], r->count[CONF_FAIL], r->count[CONF_NO_ANSWER],
+           r->count[CONF_MISSING], r->count[CONF_DECLINED], r->count[CONF_NOT_RUN],
+           r->passed ? "conforms" : "does not conform", r->reason[0] != '\0' ? ": " : "",
+           r->reason);
     if (r->options->json != NULL)
         conf_run_write_json(r);
     if (r->options->junit != NULL)
         conf_run_write_junit(r);
     if (r->options->html != NULL)
         conf_run_write_html(r);
-    printf("%s: %zu passed, %zu failed, %zu without answer, %zu missing, %zu declined, %zu not "
-           "run: %s\n",
-           r->capabilities != NULL ? json_string_value(json_object_get(r->capabilities, "name"))
-                                   : r->options->decoder,
-           r->count[CONF_PASS], r->count[CONF_FAIL], r->count[CONF_NO_ANSWER],
-           r->count[CONF_MISSING], r->count[CONF_DECLINED], r->count[CONF_NOT_RUN],
-           r->passed ? "conforms" : reason(r));
 }
 
 int conf_run(const conf_run_options *o)
@@ -476,6 +493,7 @@ int conf_run(const conf_run_options *o)
     runner w = { .r = &r };
     char vectors[CONF_PATH];
 
+    try_reports(o);
     conf_path(vectors, "%s/vectors", o->suite);
     r.entry = conf_suite_load(vectors, o->list, &r.n);
     hold_to_manifest(&r);

@@ -25,7 +25,8 @@ typedef struct {
     conf_verdict *verdict;  /* [n] */
     double *ms;             /* [n] */
     size_t n, count[CONF_OUTCOMES], valid_passed;
-    int passed; /* the verdict on the decoder */
+    char reason[400]; /* why the decoder does not conform, if that is not a vector's; or "" */
+    int passed;       /* the verdict on the decoder */
 } conf_run_result;
 
 /* Returns the exit code: 0 the decoder conforms, 1 it does not, 3 wrong usage. */

@@ -26,10 +26,10 @@ static json_t *counts(const conf_run_result *r)
 void conf_run_write_json(const conf_run_result *r)
 {
     json_t *list = json_array();
-    json_t *o = json_pack("{s:i, s:s, s:o, s:b, s:o, s:o*, s:o}", "schema", 1, "suite",
+    json_t *o = json_pack("{s:i, s:s, s:o, s:b, s:o, s:o, s:o*, s:o}", "schema", 1, "suite",
                           CONF_SUITE_VERSION, "command", ted4_json_string(r->options->decoder),
-                          "conforms", r->passed, "counts", counts(r), "capabilities",
-                          json_incref(r->capabilities), "vectors", list);
+                          "conforms", r->passed, "reason", ted4_json_string(r->reason), "counts",
+                          counts(r), "capabilities", json_incref(r->capabilities), "vectors", list);
     char *text;
 
     for (size_t i = 0; i < r->n; i++)
@@ -61,17 +61,26 @@ static void escaped(conf_bytes *b, const char *text)
         }
 }
 
+/* The reason that is not a vector's, as a test case that fails. */
+static void junit_reason(conf_bytes *b, const conf_run_result *r)
+{
+    conf_print(b, "<testcase classname=\"decoder\" name=\"verdict\"><failure message=\"");
+    escaped(b, r->reason);
+    conf_print(b, "\"/></testcase>\n");
+}
+
 void conf_run_write_junit(const conf_run_result *r)
 {
     static const char *const element[CONF_OUTCOMES] = { NULL,      "failure", "error",
                                                         "skipped", "error",   "skipped" };
+    const size_t more = r->reason[0] != '\0';
     conf_bytes b = { NULL, 0, 0 };
 
     conf_print(&b,
                "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuite name=\"TED4 conformance "
                "%s\" tests=\"%zu\" failures=\"%zu\" "
                "errors=\"%zu\" skipped=\"%zu\">\n",
-               CONF_SUITE_VERSION, r->n, r->count[CONF_FAIL],
+               CONF_SUITE_VERSION, r->n + more, r->count[CONF_FAIL] + more,
                r->count[CONF_NO_ANSWER] + r->count[CONF_MISSING],
                r->count[CONF_DECLINED] + r->count[CONF_NOT_RUN]);
     for (size_t i = 0; i < r->n; i++) {
@@ -87,6 +96,8 @@ void conf_run_write_junit(const conf_run_result *r)
         escaped(&b, v->reason);
         conf_print(&b, "\"/></testcase>\n");
     }
+    if (more)
+        junit_reason(&b, r);
     conf_print(&b, "</testsuite>\n");
     conf_write(r->options->junit, b.data, b.size);
     conf_free(&b);
@@ -117,8 +128,10 @@ void conf_run_write_html(const conf_run_result *r)
                "</style></head><body>\n<h1>TED4 conformance suite %s</h1>\n<p>Decoder: <code>",
                CONF_SUITE_VERSION);
     escaped(&b, r->options->decoder);
-    conf_print(&b, "</code></p>\n<p class=\"%s\"><strong>%s</strong></p>\n",
-               r->passed ? "pass" : "fail", r->passed ? "conforms" : "does not conform");
+    conf_print(&b, "</code></p>\n<p class=\"%s\"><strong>%s</strong> ", r->passed ? "pass" : "fail",
+               r->passed ? "conforms" : "does not conform");
+    escaped(&b, r->reason);
+    conf_print(&b, "</p>\n");
     html_counts(&b, r);
     conf_print(&b, "<table><tr><th>vector</th><th>category</th><th>outcome</th><th>reason</"
                    "th><th>intent</th></tr>\n");

@@ -166,7 +166,7 @@ static int run(int argc, char **argv)
         case RUN_DECODER: o.decoder = value; break;
         case RUN_LIST: o.list = value; break;
         case RUN_JOBS: o.jobs = (int)number("jobs", value, 1, 200); break;
-        case RUN_TIMEOUT: o.timeout = (double)number("timeout", value, 0, 86400); break;
+        case RUN_TIMEOUT: o.timeout = (double)number("timeout", value, 1, 86400); break;
         case RUN_MEMORY: o.memory = (uint64_t)number("memory", value, 0, 1 << 24) << 20; break;
         case RUN_ONCE: o.once = 1; break;
         case RUN_SECOND: o.second = variable(value); break;
@@ -217,7 +217,7 @@ static int encode(int argc, char **argv)
         case TED4_ARGUMENTS_DONE: return 0;
         case ENCODE_ENCODER: o.encoder = value; break;
         case ENCODE_PRESET: o.preset = value; break;
-        default: o.timeout = (double)number("timeout", value, 0, 86400);
+        default: o.timeout = (double)number("timeout", value, 1, 86400);
         }
     if (o.encoder == NULL || optind + 1 != argc)
         return usage("encode takes --encoder and one scene");
@@ -406,7 +406,7 @@ static int mutants(int argc, char **argv)
         case MUTANTS_ONLY: o.only = value; break;
         case MUTANTS_JOBS: o.jobs = (int)number("jobs", value, 1, 64); break;
         case MUTANTS_CHECK: o.check = 1; break;
-        default: o.timeout = (double)number("timeout", value, 0, 86400);
+        default: o.timeout = (double)number("timeout", value, 1, 86400);
         }
     return optind < argc ? usage("mutants takes no operand") : conf_mutants(&o);
 }

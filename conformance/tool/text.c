@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 #include <xxhash.h>
 #include "base/bytes.h"
 #include "tool/sha256.h"
@@ -136,19 +137,36 @@ void conf_make_folder(const char *path)
         }
 }
 
-void conf_write(const char *path, const void *data, size_t size)
+/* Makes the folder of a file, and opens the file. */
+static FILE *open_made(const char *path, const char *mode)
 {
     char folder[CONF_PATH];
     const char *slash = strrchr(path, '/');
-    FILE *f;
 
     if (slash != NULL) {
         conf_path(folder, "%.*s", (int)(slash - path), path);
         conf_make_folder(folder);
     }
-    f = fopen(path, "wb");
+    return fopen(path, mode);
+}
+
+void conf_write(const char *path, const void *data, size_t size)
+{
+    FILE *f = open_made(path, "wb");
+
     if (f == NULL || fwrite(data, 1, size, f) != size || fclose(f) != 0)
         conf_die("%s: %s", path, strerror(errno));
+}
+
+void conf_write_try(const char *path)
+{
+    const int is_new = access(path, F_OK) != 0;
+    FILE *f = open_made(path, "ab");
+
+    if (f == NULL || fclose(f) != 0)
+        conf_die("%s: %s", path, strerror(errno));
+    if (is_new)
+        unlink(path);
 }
 
 static int by_bytes(const void *a, const void *b)

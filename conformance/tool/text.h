@@ -35,6 +35,8 @@ void conf_free(conf_bytes *b);
 int conf_read(const char *path, conf_bytes *b);
 /* Creates missing folders of the path. */
 void conf_write(const char *path, const void *data, size_t size);
+/* Ends the program if conf_write could not write the file. Leaves an existing file as it is. */
+void conf_write_try(const char *path);
 void conf_make_folder(const char *path); /* "": that of a file in the root, which is there */
 /* Returns the names in a folder that end in suffix, sorted as bytes: an owned array of owned names.
  */

@@ -191,6 +191,13 @@ static void no_answers(void **state)
 /* A decoder says all of the handshake, or has no verdict. */
 static void capabilities(void **state)
 {
+    static const struct {
+        const char *way, *member;
+    } wrong[] = { { "class-unknown", "class" },      { "profile-unknown", "profiles" },
+                  { "tier-unknown", "tiers" },       { "knob-number", "knobs" },
+                  { "declines-number", "declines" }, { "lenient-text", "lenient" },
+                  { "level-0", "max_level" },        { "level-5", "max_level" },
+                  { "level-32", "max_level" } };
     static const char *const member[] = { "name",  "version", "spec",   "profiles", "max_level",
                                           "tiers", "class",   "strict", "declines", "knobs" };
 
@@ -202,7 +209,13 @@ static void capabilities(void **state)
         snprintf(text, sizeof text, "capabilities: %s is missing", member[i]);
         expect(way, 1, text);
     }
-    expect("class-unknown", 1, "capabilities: class is missing, or not what it has to be");
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        char text[80];
+
+        snprintf(text, sizeof text, "capabilities: %s is missing, or not what", wrong[i].member);
+        expect(wrong[i].way, 1, text);
+    }
+    expect("compact-alone", 1, "capabilities: profiles lacks Main");
 }
 
 static void lies(void **state)
@@ -219,7 +232,14 @@ static void lies(void **state)
     expect("no-tier", 1, " 4 passed, 4 failed");
     expect("wrong-records", 1, " 4 passed, 4 failed");
     expect("no-records", 1, " 4 passed, 4 failed");
+    expect("records-and-error", 1, " 4 passed, 4 failed");
+    expect("wrong-bytes", 1, " 4 passed, 4 failed");
+    expect("text-bytes", 1, " 4 passed, 4 failed");
+    expect("no-result", 1, " 0 passed, 8 failed");
     expect("wrong-offset", 1, " 5 passed, 3 failed");
+    expect("no-offset", 1, " 5 passed, 3 failed");
+    expect("tiers-of-invalid", 1, " 5 passed, 3 failed");
+    expect("salvages-strictly", 1, " 5 passed, 3 failed");
     expect("wrong-error", 1, " 4 passed, 4 failed");
     expect("moody", 1, " 0 passed, 8 failed");
     expect("spoils-input", 1, "does not conform");
@@ -235,6 +255,22 @@ static void declining(void **state)
            " 8 passed, 0 failed, 0 without answer, 0 missing, 0 declined, 0 not run: does not "
            "conform: T1 is not claimed");
     expect("class-alone", 1, "a class is claimed, but not T5");
+}
+
+/* claims.txt: a valid vector of profile Main; a valid and an invalid one of profile Compact; an
+ * invalid one for which the specification allows a limit, too; an invalid one with a knob. */
+static void claims(void **state)
+{
+    static const char list[] = "tests/claims.txt";
+
+    (void)state;
+    expect_of(list, "good", 0, " 5 passed, 0 failed, 0 without answer, 0 missing, 0 declined");
+    expect_of(list, "compact-refused", 0,
+              " 3 passed, 0 failed, 0 without answer, 0 missing, 2 declined");
+    expect_of(list, "compact-unclaimed", 1, " 3 passed, 2 failed");
+    expect_of(list, "knobs-refused", 0, " 5 passed, 0 failed, 0 without answer");
+    expect_of(list, "says-no-limit", 1, " 0 passed, 5 failed");
+    expect_of("tests/above.txt", "says-no-limit", 1, " 0 passed, 4 failed");
 }
 
 /* Processes that a decoder leaves running end when its time is over, and do not make the runner
@@ -381,6 +417,11 @@ static void options_in_vain(void **state)
     (void)state;
     assert_int_equal(conf(last, sizeof last, "run -d false --once --second TED4_KERNEL=plain"), 3);
     assert_non_null(strstr(said, "--second: goes without --once"));
+    assert_int_equal(conf(last, sizeof last, "run -d false -t 0"), 3);
+    assert_non_null(strstr(said, "--timeout: bad value 0; expected a whole number from 1"));
+    assert_int_equal(
+        conf(last, sizeof last, "run -d false -l conformance/lists/few.txt --html conformance"), 3);
+    assert_string_equal(last, "ted4conf: conformance: Is a directory\n");
 }
 
 /* A list that includes another one, and lists that include each other. */
@@ -412,6 +453,7 @@ int main(void)
         cmocka_unit_test(lenient_mode),
         cmocka_unit_test(no_answers),
         cmocka_unit_test(declining),
+        cmocka_unit_test(claims),
         cmocka_unit_test(left_behind),
         cmocka_unit_test(missing_vectors),
         cmocka_unit_test(replay_without_files),

@@ -21,7 +21,7 @@ for scene in pop still; do
 done
 expect bad_jobs 3 'ted4conf: --jobs: bad value 0; expected a whole number from 1 to 200' \
     "$TED4_BUILD/ted4conf" run -d false -j 0
-expect bad_timeout 3 'ted4conf: --timeout: bad value 1s; expected a whole number from 0 to 86400' \
+expect bad_timeout 3 'ted4conf: --timeout: bad value 1s; expected a whole number from 1 to 86400' \
     "$TED4_BUILD/ted4conf" run -d false -t 1s
 expect no_scene 1 'no answer' "$TED4_BUILD/ted4conf" encode -e "'$TED4_BUILD/ted4enc'" "$out/absent"
 
@@ -38,7 +38,9 @@ done
 bad() { expect "$1" "$2" "$3" "$TED4_BUILD/ted4conf" encode -t 5 \
     -e 'sh conformance/tests/bad_encoder.sh '"$1" "$out/pop"; }
 bad good 0 ': conforms'
-bad no-file 1 'there is no file'
+for way in no-file pipe folder; do
+    bad $way 1 'there is no file'
+done
 bad broken 1 'con.truncated'
 bad level-too-low 1 'lvl.exceeded'
 bad other-hash 1 'another hash'

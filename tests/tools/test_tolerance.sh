@@ -80,6 +80,11 @@ judge_of judge_odd 3 "ted4tolerance: $out/odd.json: query 0: expected" "$out/a.t
 head -c 1000 "$out/a.ted4" >"$out/cut.ted4"
 judge_of judge_cut 1 "ted4tolerance: $out/cut.ted4: byte 1000: refused [con.truncated]" \
     "$out/cut.ted4" "$out/q.json"
+# Class X has no result for a time out of range, and no decoder may give records.
+echo '[{"t":[2,1],"cam":[0,0,0]}]' >"$out/late.json"
+judge_of out_of_range 1 '{"class":null,"queries":["out of range"]}' "$out/a.ted4" "$out/late.json"
+rm "$out/out/T5-0.bin"
+judge_of out_of_range_kept 0 '{"class":"T","queries":["kept"]}' "$out/a.ted4" "$out/late.json"
 judge_of judge_no_stream 3 "ted4tolerance: $out/absent.ted4: No such file" "$out/absent.ted4" \
     "$out/q.json"
 exit $bad
