@@ -245,6 +245,28 @@ static void lies(void **state)
     expect("spoils-input", 1, "does not conform");
 }
 
+/* What is wrong with an answer, in words. */
+static void reasons(void **state)
+{
+    static const char *const said_of[][2] = {
+        { "no-result", "fail: CON-least: the result is missing, or no text\n" },
+        { "no-offset", "fail: NEG-magic-0: con.magic: the offset is missing, or no integer\n" },
+        { "says-invalid", "fail: CON-least: should be valid, is invalid con.magic\n" },
+        { "says-valid", "fail: NEG-magic-0: should be invalid con.magic, is valid\n" },
+    };
+    char last[1024];
+
+    (void)state;
+    for (size_t i = 0; i < sizeof said_of / sizeof *said_of; i++) {
+        conf(last, sizeof last,
+             "run -t 60 --memory 0 -l conformance/lists/few.txt "
+             "-d 'sh conformance/tests/bad_decoder.sh %s'",
+             said_of[i][0]);
+        if (strstr(said, said_of[i][1]) == NULL)
+            fail_msg("%s: %s", said_of[i][0], said);
+    }
+}
+
 static void declining(void **state)
 {
     (void)state;
@@ -452,6 +474,7 @@ int main(void)
         cmocka_unit_test(class_t),
         cmocka_unit_test(lenient_mode),
         cmocka_unit_test(no_answers),
+        cmocka_unit_test(reasons),
         cmocka_unit_test(declining),
         cmocka_unit_test(claims),
         cmocka_unit_test(left_behind),
