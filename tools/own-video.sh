@@ -7,6 +7,20 @@
 set -u
 export LC_ALL=C QT_QPA_PLATFORM=offscreen
 die() { echo "own-video.sh: $*" >&2; exit 3; }
+stem() { b=$(basename "$1"); printf '%s\n' "${b%.*}"; } # a clip's name without its extension
+# The lowest rate that all times of a clip fit, and the mean rate; 0: unknown.
+rates() {
+    ffprobe -v error -select_streams v:0 -show_entries stream=r_frame_rate,avg_frame_rate \
+        -of default=nw=1 "$1" </dev/null | awk -F'[=/]' '
+            { of[$1] = NF == 2 ? $2 + 0 : $3 + 0 > 0 ? $2 / $3 : 0 }
+            END { printf "%.17g\t%.17g", of["r_frame_rate"], of["avg_frame_rate"] }'
+}
+pasted() { # the name as a shell reads it
+    case $1 in
+    *[!A-Za-z0-9_./=+-]*) printf '%s\n' "$1" | sed "s/'/'\\\\''/g; s/^/'/; s/\$/'/" ;;
+    *) printf '%s\n' "$1" ;;
+    esac
+}
 try() { "$@" </dev/null >>"$out/log" 2>&1 || die "$1 $2 failed: the end of $out/log says why"; }
 
 [ $# -ge 2 ] || die "usage: own-video.sh FOLDER VIDEO, or own-video.sh FOLDER CLIP CLIP..."
@@ -35,11 +49,26 @@ if [ $# -eq 1 ]; then
 else
     one=0
     for v; do
-        name=$(basename "${v%.*}")
+        name=$(stem "$v")
         [ ! -e "$work/images/$name.png" ] || die "$v: another clip is called $name, too"
         try ffmpeg -i "$v" -frames:v 1 -update 1 "$work/images/$name.png"
         ln -L "$v" "$out/" 2>/dev/null || cp "$v" "$out/" || die "$v: cannot be copied to $out"
+        rate=$(rates "$v")
+        [ "${rate#*	}" != 0 ] || die "$v: no frame rate"
+        printf '%s\t%s\n' "$rate" "$v" >>"$work/rates" || die "$work/rates: cannot be written"
     done
+    # A difference of half a frame in a thousand may pass.
+    awk -F '\t' 'function differ(a, b) { return a - b > b / 2000 || b - a > b / 2000 }
+        NR == 1 { first = $3; rate = $1 }
+        { what = "" }
+        differ($2, $1) {
+            what = sprintf("its frame rate varies: %.5g per second on average, not %.5g", $2, $1) }
+        what == "" && differ($2, rate) {
+            what = sprintf("%.5g frames per second, but %s has %.5g", $2, first, rate) }
+        what != "" { bad = 1; print "own-video.sh: warning: " $3 ": " what }
+        END { if (bad) print "own-video.sh: such clips lose synchrony; convert each with" \
+            " ffmpeg -i CLIP -r 30 NEW.mp4, and begin again" }' "$work/rates" >&2
+    rate=$(awk 'NR == 1 { print $2 }' "$work/rates")
 fi
 n=$(ls "$work/images" | wc -l)
 [ "$n" -gt 1 ] || die "$1: $n picture$([ "$n" -eq 1 ] || echo s) at FPS=$FPS"
@@ -67,15 +96,11 @@ if [ $one = 0 ]; then
         --output_type TXT
     try colmap model_converter --input_path "$work/sparse/0" --output_path "$out/points3d.ply" \
         --output_type PLY
-    for v; do printf '%s.png\t%s\n' "$(basename "${v%.*}")" "$(basename "$v")"; done \
+    for v; do printf '%s.png\t%s\n' "$(stem "$v")" "$(basename "$v")"; done \
         >"$work/clips" || die "$work/clips: cannot be written"
-    rate=$(ffprobe -v error -select_streams v:0 -show_entries stream=avg_frame_rate -of csv=p=0 \
-        "$1" | awk -F/ 'NR == 1 && $1 + 0 > 0 && (NF == 1 || $2 + 0 > 0) {
-            printf "%.17g", $1 / (NF == 1 ? 1 : $2) }')
-    [ -n "$rate" ] || die "$1: no frame rate"
     awk -v rate="$rate" -f "$(dirname "$0")/cams.awk" "$work/clips" "$work/sparse/cameras.txt" \
         "$work/sparse/images.txt" >"$out/cams.json" || die "$out/cams.json: cannot be written"
 fi
-rm -rf "$work/models" "$work/db"
+rm -rf "$work/models" "$work/db" "$work/rates"
 [ $one = 0 ] || echo "own-video.sh: $out does not state its frame rate: use ted4enc --fps $FPS"
-echo "own-video.sh: $out is a SCENE: ted4enc --check $out"
+echo "own-video.sh: $out is a SCENE: ted4enc --check $(pasted "$out")"

@@ -50,7 +50,10 @@ done
 END
 cat >"$out/seem/ffprobe" <<'END'
 #!/bin/sh
-echo "${RATE-25/2}"
+for v; do :; done
+[ -e "$v.rate" ] && exec cat "$v.rate"
+rate=${RATE-25/2}
+[ -z "$rate" ] || printf 'r_frame_rate=%s\navg_frame_rate=%s\n' "$rate" "$rate"
 END
 cat >"$out/seem/colmap" <<'END'
 #!/bin/sh
@@ -81,6 +84,44 @@ for r in 0/0 N/A ''; do
         12:30.mp4 -a.mp4
     rm -rf "$out/here/y"
 done
+# Names without an extension, in a folder with a full stop; a shell can read the last line.
+mkdir "$out/here/my.v"
+for v in a b c a.mp4; do : >"$out/here/my.v/$v"; done
+odd bare_names 0 "./it's ü is a SCENE: ted4enc --check './it'\\''s ü'" "$sh" \
+    "$PWD/tools/own-video.sh" "it's ü" my.v/a my.v/b my.v/c
+check bare_cameras "$out/here/it's ü/cams.json" '{"name": "a", "video": "a", ' \
+    '{"name": "b", "video": "b", ' '{"name": "c", "video": "c", '
+odd bare_twice 3 './my.v/a.mp4: another clip is called a, too' "$sh" "$PWD/tools/own-video.sh" z \
+    my.v/a my.v/a.mp4
+
+# rates NAME WARNING RATES...: clips whose lowest common and mean rates are these give that
+# warning before COLMAP begins, or none if it is empty.
+rates() {
+    told=$1 warns=$2 i=0; shift 2
+    rm -rf "$out/here/rated"; mkdir "$out/here/rated"
+    for r; do
+        shift; set -- "$@" "rated/$i.mp4"
+        : >"$out/here/rated/$i.mp4"
+        printf 'r_frame_rate=%s\navg_frame_rate=%s\n\n' "${r% *}" "${r#* }" \
+            >"$out/here/rated/$i.mp4.rate"
+        i=$((i + 1))
+    done
+    odd "$told" 0 "${warns:-is a SCENE}" "$sh" "$PWD/tools/own-video.sh" rated/s "$@"
+    sed '/looking for/,$d' "$out/said" >"$out/early"
+    if [ -n "$warns" ]; then
+        check "${told}_early" "$out/early" "$warns" "-r 30 NEW.mp4"
+    elif [ -s "$out/early" ]; then fail "${told}_silent" "$(cat "$out/early")"
+    else ok "${told}_silent"; fi
+}
+rates same_rates "" '30/1 30/1' '30/1 1200000/40001' '30 30'
+rates varies "./rated/1.mp4: its frame rate varies: 16 per second on average, not 30" \
+    '30/1 30/1' '30/1 16/1' '30/1 30/1'
+rates varies_first "./rated/0.mp4: its frame rate varies: 15 per second on average, not 30" \
+    '30/1 15/1' '30/1 30/1'
+rates unequal "./rated/1.mp4: 25 frames per second, but ./rated/0.mp4 has 12.5" \
+    '25/2 25/2' '25/1 25/1' '25/2 25/2'
+rates ntsc "./rated/2.mp4: 29.97 frames per second, but ./rated/0.mp4 has 30" \
+    '30/1 30/1' '30/1 30/1' '30000/1001 30000/1001'
 for p in ffmpeg ffprobe colmap; do command -v $p >/dev/null ||
     { skip own_video "there is no $p"; exit $bad; }; done
 refuse no_file 3 "$out/absent.mp4: no such file" sh tools/own-video.sh "$out/s" "$out/absent.mp4"
@@ -115,6 +156,13 @@ for c in 04 06 08 10 12; do
     film 12.5 "$out/clip/%d.png" "$out/clips/cam $c.mp4"
     mv "$out/clip" "$out/clip$c"
 done
+
+# ffprobe sees that the third frame of a clip comes late.
+ffmpeg -v error -framerate 30 -i "$out/walk/%02d.png" -vf "setpts=PTS+if(gt(N\,1)\,0.134/TB\,0)" \
+    -vsync vfr -c:v libx264 -threads 1 -pix_fmt yuv420p "$out/late.mp4" </dev/null
+mv "$out/seem/ffprobe" "$out/absent"
+expect late 0 "late.mp4: its frame rate varies: " env PATH="$out/seem:$PATH" \
+    sh tools/own-video.sh "$out/later" "$out/late.mp4" "$out/clips/cam 04.mp4"
 
 # looks NAME PICTURES LENSES: the report of --check on the scene, whose focal length equals the
 # width of its pictures.
@@ -157,6 +205,7 @@ END
 chmod +x "$out/bin/colmap"
 expect clips_made 0 "5 of 5 pictures have poses" env PATH="$out/bin:$PATH" sh tools/own-video.sh \
     "$out/rig" "$out/clips"/*.mp4
+if grep -q warning "$out/said"; then fail no_warning "$(cat "$out/said")"; else ok no_warning; fi
 looks rig "25 train, 5 test" "12.5 frames/s"
 check in_order "$out/rig/cams.json" '"name": "cam 04", "video": "cam 04.mp4"' ', 0, 159.5], [0, '
 # COLMAP's own files, and cams.json made from them, give the same cameras through their loaders.
