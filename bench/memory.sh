@@ -4,8 +4,8 @@
 # other names are hard links to them, so that making the scene takes minutes and 60 MB, while to the
 # encoder they are 6000 files, each read and decoded by itself. A limit of 8 GB on the address
 # space, which is more than what is resident, is enforced. Growth is forced, from a fine grid on, so
-# that the model soon has many anchors. Runs: see the end; rows of those made earlier stay. A run
-# takes an hour or two of two cores.
+# that the model soon has many anchors. Rows of runs made earlier stay, unless the scene's sizes
+# (FRAMES, CAMERAS, WIDTH, HEIGHT) differ. A run takes an hour or two of two cores.
 set -e
 cd "$(dirname "$0")/.."
 bin=${TED4_BUILD:-build}
@@ -15,10 +15,18 @@ threads=${TED4_THREADS:-2}
 frames=${FRAMES:-300} cameras=${CAMERAS:-20} width=${WIDTH:-1352} height=${HEIGHT:-1014}
 limit_kib=7812500 distinct=3
 forced="--set cell=0.002 --set grow_gradient=0 --set grow_every=10 --set grow_until=1 --set probe=0"
+runs="largest usual little-cache"
+for name; do
+    case " $runs " in
+    *" $name "*) ;;
+    *) echo "memory.sh: $name: not a run; runs are $runs" >&2; exit 3 ;;
+    esac
+done
 mkdir -p "$out"
 
-if [ ! -e "$out/scene.done" ]; then
-    rm -rf "$out/scene"
+sizes="$frames frames, $cameras cameras, ${width}x$height"
+if [ "$(cat "$out/scene.done" 2>/dev/null)" != "$sizes" ]; then
+    rm -rf "$out/scene" "$out/scene.done" "$out"/*.row
     "$bin/ted4scene" bend -o "$out/scene" --layout neu3d --size "${width}x$height" \
         --cameras $((cameras - 1)) --test-cameras 1 --frames $distinct -j "$threads"
     for folder in "$out"/scene/cam*/images; do
@@ -28,7 +36,7 @@ if [ ! -e "$out/scene.done" ]; then
             i=$((i + 1))
         done
     done
-    touch "$out/scene.done"
+    echo "$sizes" >"$out/scene.done"
 fi
 
 value() { sed -n "s/.*\"$1\":\([-0-9.e+]*\).*/\1/p" "$2"; }
@@ -72,7 +80,7 @@ END
     echo
     echo "| run | options | anchors | Gaussians in the file | peak MiB |"
     echo "|---|---|---|---|---|"
-    for name in largest usual little-cache; do
+    for name in $runs; do
         if [ -e "$out/$name.row" ]; then cat "$out/$name.row"; fi
     done
 } >"$page"

@@ -17,7 +17,7 @@ file=$1 scene=$2 outlines=$3 down=$4
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 "$build/ted4eval" "$file" "$scene" --anyway --downscale "$down" --images "$work/pictures" -v \
-    2>"$work/views" >"$work/said"
+    2>"$work/views" >"$work/said" || { status=$?; cat "$work/views" >&2; exit $status; }
 mkdir -p "$work/scene/truth/masks"
 {
     read -r width height
