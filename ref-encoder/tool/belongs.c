@@ -80,6 +80,29 @@ int ted4_belongs_scene(const ted4_info *file, const ted4_dataset *d, char *why, 
     return 0;
 }
 
+int ted4_belongs_size(const ted4_camera_list *taken, const ted4_dataset *d, int want_test,
+                      char *why, size_t why_size)
+{
+    const ted4_camera *c = NULL;
+
+    for (size_t i = d->n_pictures; i-- > 0;) {
+        if (d->pictures[i].is_test != want_test)
+            continue;
+        c = &d->pictures[i].camera;
+        for (size_t k = 0; k < taken->n; k++)
+            if (taken->camera[k].view.width == c->width &&
+                taken->camera[k].view.height == c->height)
+                return 1;
+    }
+    if (c == NULL || taken->n == 0)
+        return 1;
+    snprintf(why, why_size,
+             "these pictures have %dx%d pixels, those of its training %dx%d: give --downscale as "
+             "the training did, or --trained-downscale",
+             c->width, c->height, taken->camera[0].view.width, taken->camera[0].view.height);
+    return 0;
+}
+
 void ted4_belongs_add(ted4_belongs_sum *s, const uint8_t *truth, const uint8_t *drawn,
                       size_t pixels)
 {

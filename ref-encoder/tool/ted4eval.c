@@ -23,6 +23,7 @@
 #include "tool/arguments.h"
 #include "tool/cli.h"
 #include "tool/clock.h"
+#include "tool/file_cameras.h"
 #include "tool/leftovers.h"
 #include "tool/output.h"
 #include "tool/picture_out.h"
@@ -117,6 +118,7 @@ typedef struct {
     ted4_parallel parallel;
     ted4_info info;
     ted4_recon *recon; /* owned, like all members below */
+    ted4_camera_list taken;
     ted4_viewer *viewer;
     ted4_dataset data;
     size_t row[SHEET_ROWS]; /* index of the picture in each row of the sheet */
@@ -241,6 +243,9 @@ static int open_file(session *s)
         ted4_scene_free(scene);
     }
     s->sum.decode_ms = 1e3 * (ted4_clock() - start);
+    if (e.code == TED4_OK &&
+        ted4_file_cameras(bytes, s->sum.bytes, TED4_CAMS_TAKEN, &s->taken) != 0)
+        e.code = TED4_E_LIMIT_MEMORY;
     free(bytes);
     ted4_teller_clear(&teller);
     return e.code == TED4_OK ? TED4_EXIT_FINE
@@ -529,6 +534,9 @@ static int evaluate(session *s)
         return failed(set->scene, set->want_test
                                       ? "no test pictures; --split train compares training pictures"
                                       : "no training pictures");
+    if (set->trained == 0 &&
+        !ted4_belongs_size(&s->taken, &s->data, set->want_test, why, sizeof why))
+        fprintf(stderr, "ted4eval: warning: %s\n", why);
     if (set->images != NULL &&
         ted4_eval_images_begin(set->images, n, set->moving, set->force, &m) != 0)
         return complain(m.text);
@@ -583,6 +591,7 @@ int main(int argc, char **argv)
     free(s.colours);
     ted4_moving_free(s.median, s.data.n_cameras);
     ted4_dataset_free(&s.data);
+    ted4_camera_list_free(&s.taken);
     ted4_recon_free(s.recon);
     ted4_threads_finish(&s.parallel);
     ted4_teller_end(&teller);

@@ -95,6 +95,44 @@ static void test_scene(void **state)
     expect(&p, NULL);
 }
 
+/* why: of pictures of the split, or NULL if the file has learnt from such pictures. */
+static void expect_size(const pair *p, const ted4_camera_list *taken, int test, const char *why)
+{
+    char text[256] = "";
+    const int belongs = ted4_belongs_size(taken, &p->d, test, text, sizeof text);
+
+    assert_int_equal(belongs, why == NULL);
+    assert_string_equal(text, why == NULL ? "" : why);
+}
+
+static void test_size(void **state)
+{
+    ted4_listed_camera camera[2] = { { .view = { .width = 40, .height = 30 } },
+                                     { .view = { .width = 20, .height = 60 } } };
+    const ted4_camera_list none = { 0 }, taken = { .camera = camera, .n = 2 };
+    pair p;
+
+    (void)state;
+    make_pair(&p);
+    p.picture[5].is_test = 1;
+    expect_size(&p, &none, 0, NULL);
+    expect_size(&p, &taken, 0,
+                "these pictures have 80x60 pixels, those of its training 40x30: give --downscale "
+                "as the training did, or --trained-downscale");
+    camera[1].view.width = 80;
+    expect_size(&p, &taken, 0, NULL);
+    expect_size(&p, &taken, 1, NULL);
+    /* One picture of a size that was seen is enough, if it is of the split. */
+    camera[1].view.height = 61;
+    p.picture[5].camera.height = 61;
+    expect_size(&p, &taken, 1, NULL);
+    expect_size(&p, &taken, 0,
+                "these pictures have 80x60 pixels, those of its training 40x30: give --downscale "
+                "as the training did, or --trained-downscale");
+    p.picture[7].camera.height = 61;
+    expect_size(&p, &taken, 0, NULL);
+}
+
 static void test_pictures(void **state)
 {
     uint8_t truth[300], drawn[300];
@@ -175,7 +213,7 @@ static void test_sheet(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(test_scene),
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_scene), cmocka_unit_test(test_size),
                                         cmocka_unit_test(test_pictures),
                                         cmocka_unit_test(test_sheet) };
 

@@ -167,6 +167,21 @@ expect eval_young 3 "young.ted4: may not be of $out/scene, or is hardly trained:
 expect eval_young_anyway 0 'psnr ' "$TED4_BUILD/ted4eval" "$out/young.ted4" "$out/scene" --anyway
 expect eval_first_times 0 'psnr ' "$TED4_BUILD/ted4eval" "$out/x.ted4" "$out/longer" --max-frames 4
 
+# A file that lists its cameras tells that the pictures of its training had another size.
+"$enc" "$out/scene" -o "$out/listed.ted4" $small --checkpoint "$out/c" --resume --cameras -q
+# size NAME WARNINGS ARGUMENT...: ted4eval says so many times that the sizes differ.
+size() {
+    name=$1 warnings=$2; shift 2
+    "$TED4_BUILD/ted4eval" "$@" --anyway -q >"$out/text" 2>"$out/err"
+    equal "$name" "$? $(grep -c '^psnr ' "$out/text") $(grep -c '' "$out/err")" "0 1 $warnings"
+}
+size eval_size 0 "$out/listed.ted4" "$out/scene"
+size eval_other_size 1 "$out/listed.ted4" "$out/scene" --downscale 2
+check eval_warns "$out/err" "ted4eval: warning: these pictures have 16x12 pixels, those of its \
+training 32x24: give --downscale as the training did, or --trained-downscale"
+size eval_trained 0 "$out/listed.ted4" "$out/scene" --downscale 2 --trained-downscale 1
+size eval_unlisted 0 "$out/x.ted4" "$out/scene" --downscale 2
+
 # A single one is not in the plural.
 "$TED4_BUILD/ted4scene" still -o "$out/one" --layout calibration --size 32x24 --frames 1 \
     --cameras 1 --test-cameras 0 -j 1 2>/dev/null
