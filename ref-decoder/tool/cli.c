@@ -52,13 +52,21 @@ int ted4_cli_end(const char *program, int code)
     return TED4_EXIT_TOOL;
 }
 
+/* Returns 1 for what is wrong with a query and not with the file (R-ERR-008). */
+static int is_of_query(ted4_status code)
+{
+    return code == TED4_E_REC_NONFINITE || code == TED4_E_QUERY;
+}
+
 static void print_json(const char *path, const ted4_error *e, const char *text)
 {
-    json_t *const o = json_pack("{s:o, s:s, s:s, s:I, s:o}", "file", ted4_json_string(path),
-                                "verdict", ted4_verdict_name(ted4_status_verdict(e->code)), "error",
-                                ted4_status_id(e->code), "offset", (json_int_t)e->offset, "text",
-                                ted4_json_string(text));
+    const ted4_verdict verdict = is_of_query(e->code) ? TED4_VALID : ted4_status_verdict(e->code);
+    json_t *const o = json_pack("{s:o, s:s, s:s}", "file", ted4_json_string(path), "verdict",
+                                ted4_verdict_name(verdict), "error", ted4_status_id(e->code));
 
+    if (!is_of_query(e->code))
+        json_object_set_new(o, "offset", json_integer((json_int_t)e->offset));
+    json_object_set_new(o, "text", ted4_json_string(text));
     json_dumpf(o, stdout, JSON_COMPACT);
     putchar('\n');
     json_decref(o);
@@ -77,11 +85,17 @@ int ted4_report_unread(const char *program, const char *path, int json)
 int ted4_report(const char *program, const char *path, const ted4_error *e, int json)
 {
     const ted4_verdict verdict = ted4_status_verdict(e->code);
+    const int of_query = is_of_query(e->code);
+    const char *const text = of_query ? "this time and camera have no result"
+                                      : ted4_status_text(e->code);
 
     if (json)
-        print_json(path, e, ted4_status_text(e->code));
-    fprintf(stderr, "%s: %s: byte %zu: %s [%s] (specification %s)\n", program, path, e->offset,
-            ted4_status_text(e->code), ted4_status_id(e->code), ted4_status_section(e->code));
-    return verdict == TED4_INVALID || verdict == TED4_UNSUPPORTED ? TED4_EXIT_REFUSED
-                                                                  : TED4_EXIT_TOOL;
+        print_json(path, e, text);
+    fprintf(stderr, "%s: %s: ", program, path);
+    if (!of_query)
+        fprintf(stderr, "byte %zu: ", e->offset);
+    fprintf(stderr, "%s [%s] (specification %s)\n", text, ted4_status_id(e->code),
+            ted4_status_section(e->code));
+    return !of_query && (verdict == TED4_INVALID || verdict == TED4_UNSUPPORTED) ? TED4_EXIT_REFUSED
+                                                                                 : TED4_EXIT_TOOL;
 }

@@ -1,7 +1,7 @@
 /* cli.h - functions that all programs share: beginning and end, reading a file, and reporting
  * why a stream was refused.
  * Exit codes: 0 success; 1 the stream was refused; 2 success with warnings; 3 wrong usage, failed
- * input or output, or too few resources.
+ * input or output, a query without a result, or too few resources.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_CLI_H
 #define TED4_CLI_H
@@ -40,7 +40,8 @@ uint8_t *ted4_read_stream(FILE *f, size_t *size);
 
 /* Reports on stderr why path was not decoded: "ted4dec: a.ted4: byte 1234: text [id]
  * (specification 5.1)". With json, also prints an object on stdout. Returns the exit code of the
- * verdict. */
+ * verdict. An error of a query says nothing against the file: it is reported without an offset, and
+ * the exit code is TED4_EXIT_TOOL. */
 int ted4_report(const char *program, const char *path, const ted4_error *e, int json);
 
 /* Reports that path cannot be read, for the reason in errno, in the same way. Returns the exit
