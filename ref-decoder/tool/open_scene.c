@@ -21,7 +21,8 @@ static void print_element(void *user, size_t offset, const char *element, int64_
 }
 
 /* Reports the contents of the file, and the time and memory used to decode it to attributes.
- * ru_maxrss is the peak of this process in KiB (Linux), including its copy of the file. */
+ * ru_maxrss is the peak of this process in KiB (Linux), including its copy of the file: it is that
+ * of the largest file until then. */
 static void tell_cost(const ted4_session *s, size_t size, double ms)
 {
     const ted4_settings *const set = s->set;
@@ -31,7 +32,7 @@ static void tell_cost(const ted4_session *s, size_t size, double ms)
     if (set->verbose || (ted4_settings_only_check(set) && !set->quiet))
         fprintf(stderr,
                 "ted4dec: %s: %s, %zu bytes, %" PRIu32 " anchor%s, %zu Gaussian%s, %" PRIu32
-                " frame%s; decoded to attributes in %.1f ms, peak memory %.1f MiB\n",
+                " frame%s; decoded to attributes in %.1f ms, peak memory so far %.1f MiB\n",
                 set->input, s->warned ? "incomplete" : "valid", size, s->info.n_anchors,
                 ted4_s(s->info.n_anchors), s->info.n_gaussians, ted4_s(s->info.n_gaussians),
                 s->info.frames, ted4_s(s->info.frames), ms, mib);
@@ -122,8 +123,10 @@ int ted4_action_open(ted4_session *s)
         s->time = requested_time(s);
         if (e.code != TED4_OK)
             tell_salvage(s, &what);
-        e.code = ted4_recon_new(&s->recon, scene, &options);
+        e = (ted4_error) { ted4_recon_new(&s->recon, scene, &options), 0 };
         ted4_scene_free(scene);
+    } else if (ted4_status_verdict(what.stop.code) == TED4_LIMIT) {
+        e = what.stop; /* what made --lenient recover nothing */
     }
     if (e.code == TED4_OK)
         tell_cost(s, size, 1e3 * (ted4_clock() - start));
