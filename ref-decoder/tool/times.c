@@ -86,8 +86,8 @@ int ted4_seconds_parse(const char *text, ted4_seconds *s)
 {
     enum { MAX_SECONDS = 1000000 };
     int n = 0;
-    uint32_t whole;
-    const char *p = read_digits(text, &whole);
+    uint32_t whole = 0;
+    const char *p = *text == '.' ? text : read_digits(text, &whole);
 
     if (p == NULL || whole >= MAX_SECONDS)
         return -1;

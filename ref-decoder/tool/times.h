@@ -31,7 +31,7 @@ typedef struct {
 } ted4_seconds;
 
 /* Parses a decimal number of seconds below 10^6 with up to 7 digits after the point, followed by
- * "s": "1.5s". Returns 0, or -1. */
+ * "s": "1.5s", ".5s". Returns 0, or -1. */
 int ted4_seconds_parse(const char *text, ted4_seconds *s);
 
 /* R-MED-001: returns the time of a scene of n_frames at rate_num / rate_den frames per second, all

@@ -133,7 +133,7 @@ static void expect_second(const char *text, uint32_t frames, uint32_t rate_num, 
 /* R-MED-001, with exact fractions. */
 static void test_seconds(void **state)
 {
-    static const char *const bad[] = { "",         "s",   "1",   "1.s",         ".5s", "-1s",
+    static const char *const bad[] = { "",         "s",   "1",   "1.s",         ".s",  "-1s",
                                        "1000000s", "1.5", "1 s", "0.12345678s", "1s ", "nans" };
     ted4_seconds s;
 
@@ -143,6 +143,7 @@ static void test_seconds(void **state)
     expect_second("0s", 60, 30, 1, 0, 1);
     expect_second("1s", 61, 30, 1, 1, 2);
     expect_second("1.5s", 61, 30, 1, 3, 4);
+    expect_second(".5s", 61, 30, 1, 1, 4);
     expect_second("1.50s", 61, 30, 1, 3, 4);
     expect_second("0.5s", 16, 30000, 1001, 1000, 1001); /* 15 frames of 30000/1001 end at 0.5005 */
     expect_second("0.5005s", 16, 30000, 1001, 1, 1);
