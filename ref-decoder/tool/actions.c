@@ -54,18 +54,23 @@ static int check_up(const ted4_session *s)
     return TED4_EXIT_TOOL;
 }
 
-/* A camera centre changes nothing in formats whose harmonics hold the colours of all views, unless
- * the shapes depend on the view as well. */
+/* A camera centre changes nothing if nothing depends on the view, nor in formats whose harmonics
+ * hold the colours of all views, unless the shapes depend on the view as well. What --hash prints
+ * names the centre. */
 static int check_centre(const ted4_session *s)
 {
     const ted4_settings *const set = s->set;
+    const char *why = NULL;
 
-    if (!set->has_centre || set->hash || s->info.view != TED4_VIEW_COLOUR ||
-        set->format->max_sh_degree < 0)
+    if (!set->has_centre || set->hash)
         return TED4_EXIT_FINE;
-    fprintf(stderr, "ted4dec: --camera-centre: has no effect: spherical harmonics hold the colours "
-                    "of all views;"
-                    " .raw holds those of one\n");
+    if (s->info.view == TED4_VIEW_NONE)
+        why = "nothing in this file depends on the view";
+    else if (s->info.view == TED4_VIEW_COLOUR && set->format->max_sh_degree >= 0)
+        why = "spherical harmonics hold the colours of all views; .raw holds those of one";
+    if (why == NULL)
+        return TED4_EXIT_FINE;
+    fprintf(stderr, "ted4dec: --camera-centre: has no effect: %s\n", why);
     return TED4_EXIT_TOOL;
 }
 

@@ -104,8 +104,9 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
                    "print the hash of the decoded integers and, for --frames or --time, of these "
                    "queries" },
     [OPT_TEST] = { 0, "test", NULL,
-                   "only decode, checking everything, and tell time and peak memory (also what "
-                   "happens when nothing else is asked for); of any number of files" },
+                   "only decode, checking everything, and tell time and the program's peak memory "
+                   "so far (also what happens when nothing else is asked for); of any number of "
+                   "files" },
     [OPT_LENIENT] = { 0, "lenient", NULL,
                       "of a damaged or truncated file take the first whole tiles, and say so" },
     [OPT_TRACE] = { 0, "trace", NULL,
@@ -247,9 +248,23 @@ static int set_time(ted4_settings *s, const char *value)
         "seconds, as 1.5s, or 0 to 1, as 0.25 or 7/30; at most 7 digits after a point");
 }
 
+/* Sets the value of an option that may be given once: of two files, one would be lost. */
+static int set_once(const char *option, const char *value, const char **out)
+{
+    if (*out != NULL) {
+        fprintf(stderr, "ted4dec: %s: only once (see --help)\n", option);
+        return TED4_EXIT_TOOL;
+    }
+    *out = value;
+    return 0;
+}
+
 static int set_render(ted4_settings *s, const char *value)
 {
-    s->render = value;
+    const int code = set_once("--render", value, &s->render);
+
+    if (code != 0)
+        return code;
     if (ted4_has_suffix(value, TED4_VIDEO_SUFFIX))
         return ted4_pattern_count(value) == 0
                    ? 0
@@ -261,7 +276,10 @@ static int set_render(ted4_settings *s, const char *value)
 
 static int set_output(ted4_settings *s, const char *value)
 {
-    s->output = value;
+    const int code = set_once("-o", value, &s->output);
+
+    if (code != 0)
+        return code;
     s->format = ted4_output_is_stdout(value) ? &ted4_format_ply : ted4_format_find(value);
     return s->format == NULL ? bad_format(value) : check_pattern("output", value);
 }
@@ -295,9 +313,9 @@ static int set_option(ted4_settings *s, int option, const char *value)
     case OPT_SH_DEGREE: return set_number("sh-degree", value, TED4_SH_MAX_DEGREE, &s->sh_degree);
     case OPT_UP: return set_up(s, value);
     case OPT_RENDER: return set_render(s, value);
-    case OPT_CAMERA: s->cameras = value; return 0;
+    case OPT_CAMERA: return set_once("--camera", value, &s->cameras);
     case OPT_ORBIT: return set_count("orbit", value, &s->orbit);
-    case OPT_PATH: s->path = value; return 0;
+    case OPT_PATH: return set_once("--path", value, &s->path);
     case OPT_VIEWS: return set_count("views", value, &s->views);
     case OPT_MEMORY: return set_bound("max-memory", value, &s->max_memory);
     case OPT_WORK: return set_bound("max-work", value, &s->max_work);

@@ -200,7 +200,13 @@ static const char *const wrong[][2] = {
     { "v1.ted4 --hash --camera-centre 1,2,3", "--hash needs --frames or --time" },
     { "v1.ted4 --time 0 -o a.raw --sh-degree 0", "more than .raw can hold" },
     { "v1.ted4 --time 0 -o a.splat --sh-degree 1", "more than .splat can hold" },
-    { "v1.ted4 --time 0 -o a.ply --camera-centre 1,2,3", "--camera-centre: has no effect" },
+    { "v1.ted4 --time 0 -o a.ply --camera-centre 1,2,3", "--camera-centre: has no effect: sph" },
+    { "v0.ted4 --time 0 -o a.ply --camera-centre 1,2,3", "--camera-centre: has no effect: noth" },
+    { "v0.ted4 --time 0 -o a.raw --camera-centre 1,2,3", "--camera-centre: has no effect: noth" },
+    { "v1.ted4 --time 0 -o a.ply -o a.splat", "ted4dec: -o: only once" },
+    { "v1.ted4 --render a.png --render b.png --orbit 1", "ted4dec: --render: only once" },
+    { "v1.ted4 --render a.png --camera x.json --camera y.json", "ted4dec: --camera: only once" },
+    { "v1.ted4 --render a.png --path x.json --path x.json", "ted4dec: --path: only once" },
     { "v1.ted4 -q -v", "-q and -v" },
 };
 
@@ -212,6 +218,62 @@ static void test_usage(void **state)
         expect_refusal(wrong[i][0], wrong[i][1]);
     assert_int_equal(run("ted4dec v1.ted4 --nothing"), 3);
     assert_int_equal(run("ted4dec v1.ted4 -o"), 3);
+}
+
+/* A query without a result says nothing against the file (R-ERR-008), and has no offset in it. */
+static void test_no_result(void **state)
+{
+    char root[1024], arguments[1300];
+
+    (void)state;
+    need_programs();
+    assert_non_null(getcwd(root, sizeof root));
+    snprintf(arguments, sizeof arguments,
+             "'%s/conformance/vectors/valid/view/VIW-far-camera.ted4' --hash --time 0 --json",
+             root);
+    expect_refusal(arguments, "VIW-far-camera.ted4: this time and camera have no result "
+                              "[rec.non-finite] (specification 12.2)");
+    json_t *const report = json_loads(out, 0, NULL);
+
+    assert_string_equal(json_string_value(json_object_get(report, "verdict")), "valid");
+    assert_string_equal(json_string_value(json_object_get(report, "error")), "rec.non-finite");
+    assert_string_equal(json_string_value(json_object_get(report, "text")),
+                        "this time and camera have no result");
+    assert_null(json_object_get(report, "offset"));
+    json_decref(report);
+}
+
+/* A truncated file of which nothing is recovered because a limit is in the way is not refused for
+ * being truncated: with more memory or work it would be recovered. Whether it is the file that
+ * takes too much, or, without an offset in it, what is made of it for queries. */
+static void test_lenient_limits(void **state)
+{
+    unsigned made = 0;
+    size_t size;
+
+    (void)state;
+    need_programs();
+    uint8_t *const data = contents("v1.ted4", &size);
+
+    write_contents("cut.ted4", data, size - 1);
+    free(data);
+    expect_refusal("cut.ted4 --lenient --max-work 100", "[limit.work]");
+    assert_int_equal(run("ted4dec cut.ted4 --max-memory 5000"), 1);
+    for (unsigned bytes = 5000; run("ted4dec cut.ted4 --lenient --max-memory %u", bytes) != 2;
+         bytes += bytes / 16) {
+        char *const err = (char *)contents("err", &size);
+
+        err[size] = '\0';
+        const int is_made = strstr(err, ": incomplete: tiles 0 to ") != NULL;
+
+        if (strstr(err, is_made ? ": byte 0: needs more memory than allowed or available [limit."
+                                : "[limit.memory] (specification 13)\n") == NULL)
+            fail_msg("%u bytes: %s", bytes, err);
+        made += (unsigned)is_made;
+        free(err);
+        assert_int_equal(run("ted4dec cut.ted4 --lenient --max-memory %u", bytes), 3);
+    }
+    assert_true(made > 0);
 }
 
 /* Without --sh-degree: 1 where colours depend on the view, else 0. */
@@ -349,6 +411,8 @@ static void test_several(void **state)
     assert_int_equal(run("ted4dec v0.ted4 v1.ted4 v2.ted4 --test"), 0);
     assert_int_equal(run("ted4dec v0.ted4 bad.ted4 v1.ted4 --json 2>/dev/null"), 1);
     assert_int_equal(count(out, '\n'), 3);
+    assert_int_equal(run("ted4dec v0.ted4 v1.ted4 2>&1 | grep -c 'peak memory so far '"), 0);
+    assert_string_equal(out, "2\n");
     assert_int_equal(run("ted4dec v0.ted4 missing.ted4 bad.ted4 v1.ted4"), 3);
     assert_int_equal(run("ted4info v0.ted4 bad.ted4 v1.ted4"), 1);
     assert_non_null(strstr(out, "v0.ted4: TED4"));
@@ -437,7 +501,8 @@ int main(void)
         cmocka_unit_test(test_widen),          cmocka_unit_test(test_several),
         cmocka_unit_test(test_seconds),        cmocka_unit_test(test_help),
         cmocka_unit_test(test_no_such_format), cmocka_unit_test(test_endless),
-        cmocka_unit_test(test_gravest),
+        cmocka_unit_test(test_gravest),        cmocka_unit_test(test_no_result),
+        cmocka_unit_test(test_lenient_limits),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }

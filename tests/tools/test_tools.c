@@ -50,10 +50,9 @@ static void test_hash(void **state)
         char want[128], hash[33];
         size_t size;
 
-        assert_int_equal(
-            run("ted4dec v%d.ted4 -o all%d.raw --keep-all --time 1/3 --camera-centre 1,-2,0.5",
-                view, view),
-            view == 2 ? 2 : 0);
+        assert_int_equal(run("ted4dec v%d.ted4 -o all%d.raw --keep-all --time 1/3 %s", view, view,
+                             view == 0 ? "" : "--camera-centre 1,-2,0.5"),
+                         view == 2 ? 2 : 0);
         snprintf(want, sizeof want, "all%d.raw", view);
         uint8_t *const data = contents(want, &size);
 
