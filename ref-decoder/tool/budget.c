@@ -62,6 +62,32 @@ static int row_of(ted4_budget *b, const char *element, int64_t index)
     return i;
 }
 
+/* Returns 1 if chunks of the current type have rows of their own. */
+static int has_rows(ted4_budget *b)
+{
+    static const char critical[][5] = { "HEAD", "NETE", "NETR", "BANK", "POSN", "TILE", "ENDS" };
+
+    for (size_t i = 0; i < sizeof critical / sizeof *critical; i++)
+        if (strcmp(b->chunk, critical[i]) == 0)
+            return 1;
+    for (int i = 0; i < b->n_rows; i++)
+        if (strcmp(b->row[i].chunk, b->chunk) == 0)
+            return 1;
+    if (b->n_types == TED4_BUDGET_TYPES)
+        return 0;
+    b->n_types++;
+    return 1;
+}
+
+static void begin_chunk(ted4_budget *b, int64_t type)
+{
+    memset(b->chunk, 0, sizeof b->chunk);
+    for (int i = 0; i < 4; i++)
+        b->chunk[i] = (char)(type >> 8 * i & 0x7f);
+    if (!has_rows(b))
+        memcpy(b->chunk, "other", sizeof "other");
+}
+
 static void keep_header(ted4_budget *b, const char *element, int64_t index, int64_t value)
 {
     if (b->n_header < TED4_HEADER_VALUES)
@@ -78,8 +104,7 @@ void ted4_budget_trace(void *user, size_t offset, const char *element, int64_t i
     if (is_symbol(element))
         return;
     if (strcmp(element, "chunk_type") == 0)
-        for (int i = 0; i < 4; i++)
-            b->chunk[i] = (char)(value >> 8 * i & 0x7f);
+        begin_chunk(b, value);
     else if (b->n_rows == 0)
         memcpy(b->chunk, "file", sizeof "file");
     b->disordered |= offset < b->offset || (b->n_rows == 0 && offset != 0);

@@ -7,11 +7,18 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum { TED4_BUDGET_ROWS = 160, TED4_BUDGET_NAME = 32, TED4_HEADER_VALUES = 80 };
+/* Rows are enough for all elements of critical chunks, for TED4_BUDGET_TYPES types of ancillary
+ * chunks, whose rows are two each, and for the two of all other types. */
+enum {
+    TED4_BUDGET_ROWS = 200,
+    TED4_BUDGET_TYPES = 50,
+    TED4_BUDGET_NAME = 32,
+    TED4_HEADER_VALUES = 80
+};
 
 /* All elements with the same name in chunks of the same type. */
 typedef struct {
-    char chunk[8]; /* "HEAD"; "file" before the first chunk */
+    char chunk[8]; /* "HEAD"; "file" before the first chunk; "other": of more ancillary types */
     char element[TED4_BUDGET_NAME];
     uint64_t bytes;
     uint64_t symbols; /* of substreams; 0 for other elements */
@@ -27,10 +34,11 @@ typedef struct {
 typedef struct {
     ted4_budget_row row[TED4_BUDGET_ROWS];
     int n_rows, owner; /* owner: row to which the byte at offset belongs */
+    int n_types;       /* of ancillary chunks with rows of their own */
     size_t offset;
     ted4_header_value header[TED4_HEADER_VALUES];
     int n_header;
-    char chunk[8];  /* type of the current chunk */
+    char chunk[8];  /* type of the current chunk, as in its rows */
     int disordered; /* 1: elements were not in file order, or did not fit in the arrays */
 } ted4_budget;
 
