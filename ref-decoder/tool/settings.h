@@ -9,6 +9,8 @@
 /* The end of a name of --render that asks for one video in place of pictures. */
 #define TED4_VIDEO_SUFFIX ".mp4"
 
+enum { TED4_MAX_VIEWS = 1000000 }; /* cameras of --orbit, pictures of --path */
+
 typedef struct {
     const char *input;
     const char *output, *render;      /* patterns; NULL: not requested */

@@ -52,8 +52,6 @@ enum {
     N_OPTIONS
 };
 
-enum { MAX_VIEWS = 1000000 };
-
 static const ted4_argument OPTIONS[N_OPTIONS] = {
     [OPT_OUTPUT] = { 'o', "output", "FILE",
                      "write Gaussians, one file per frame; the name ends in a format below and may "
@@ -86,17 +84,19 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
     [OPT_RENDER] = { 0, "render", "FILE",
                      "draw what --camera, --orbit or --path sees as FILE.png, whose name may hold "
                      "one "
-                     "%d, or as a video FILE.mp4, with the program ffmpeg" },
+                     "%d, or as a video FILE.mp4 at the scene's frame rate, with the program "
+                     "ffmpeg" },
     [OPT_CAMERA] = { 0, "camera", "FILE.json",
                      "list of {width, height, fx, fy, cx, cy, R[9], t[3], frame or time}, a "
                      "transforms_*.json, whose times are fractions of the scene, or the word file: "
-                     "the cameras of FILE.ted4" },
+                     "the cameras of FILE.ted4. Default time: 0" },
     [OPT_ORBIT] = { 0, "orbit", "N",
                     "N cameras around the scene, or to and fro where the cameras of FILE.ted4 "
                     "stand, while it plays once" },
     [OPT_PATH] = { 0, "path", "FILE.json",
-                   "a camera that moves along these ones, while the scene plays once; file: the "
-                   "path of FILE.ted4" },
+                   "a camera that moves along these ones, while the scene plays once, or from the "
+                   "first one's time to the last one's if all have one and these do not decrease; "
+                   "file: the path of FILE.ted4" },
     [OPT_VIEWS] = { 0, "views", "N",
                     "pictures of --path. Default: as many as the scene has frames; of a scene of "
                     "one time, 30 from camera to camera" },
@@ -214,8 +214,8 @@ static int set_count(const char *name, const char *value, int *out)
 {
     int64_t n;
 
-    if (ted4_arguments_number(value, 1, MAX_VIEWS, &n) != 0)
-        return ted4_arguments_bad_number("ted4dec", name, value, 1, MAX_VIEWS);
+    if (ted4_arguments_number(value, 1, TED4_MAX_VIEWS, &n) != 0)
+        return ted4_arguments_bad_number("ted4dec", name, value, 1, TED4_MAX_VIEWS);
     *out = (int)n;
     return 0;
 }

@@ -18,8 +18,9 @@ enum {
     ORBIT_HEIGHT = 720, /* if the file has no cameras to take the size from */
 };
 
-/* An orbit around Gaussians: half the angle of view, and how high the cameras stand, in radians;
- * how much of the Gaussians' distances the circle leaves inside the picture. */
+/* An orbit around Gaussians: half the angle of view if the file has no cameras to take it from, and
+ * how high the cameras stand, in radians; how much of the Gaussians' distances the circle leaves
+ * inside the picture. */
 static const double HALF_VIEW = 0.45, ELEVATION = 0.2, INSIDE = 0.8;
 
 static int no_memory(const ted4_session *s)
@@ -62,19 +63,40 @@ static double time_of_key(const ted4_session *s, const ted4_listed_camera *c)
     return (double)t.num / (double)t.den;
 }
 
-/* Returns the time of picture i of n of a path: between those of the keys, if all have one. */
+static int has_time(const ted4_listed_camera *c)
+{
+    return c->has_frame || c->time.den > 0;
+}
+
+/* Returns 1 if the times of the keys count, as in the player (player/page/path.js): all have one,
+ * and they do not decrease. Otherwise warns if there are some. */
+static int have_times(ted4_session *s, const ted4_camera_list *keys)
+{
+    const char *const name = strcmp(s->set->path, "file") == 0 ? s->set->input : s->set->path;
+    size_t timed = 0, decreasing = 0;
+
+    for (size_t i = 0; i < keys->n; i++)
+        timed += (size_t)has_time(&keys->camera[i]);
+    for (size_t i = 1; i < keys->n && timed == keys->n; i++)
+        decreasing += time_of_key(s, &keys->camera[i]) < time_of_key(s, &keys->camera[i - 1]);
+    if (timed == keys->n && decreasing == 0)
+        return 1;
+    if (timed > 0 && !s->set->has_time) {
+        s->warned = 1;
+        fprintf(stderr, "ted4dec: warning: %s: times are left out: %s\n", name,
+                decreasing > 0 ? "they decrease" : "not all cameras have one");
+    }
+    return 0;
+}
+
+/* Returns the time of picture i of n of a path, between those of the keys. */
 static ted4_time path_time(const ted4_session *s, const ted4_camera_list *keys, size_t i, size_t n)
 {
     const double at = ted4_path_position(i, n, keys->n);
     const size_t last = keys->n - 1, k = at < (double)last ? (size_t)at : last,
                  next = k < last ? k + 1 : last;
-    double a, b;
+    const double a = time_of_key(s, &keys->camera[k]), b = time_of_key(s, &keys->camera[next]);
 
-    for (size_t j = 0; j < keys->n; j++)
-        if (!keys->camera[j].has_frame && keys->camera[j].time.den == 0)
-            return playing(i, n);
-    a = time_of_key(s, &keys->camera[k]);
-    b = time_of_key(s, &keys->camera[next]);
     return ted4_time_of_part(a + (at - (double)k) * (b - a));
 }
 
@@ -85,6 +107,22 @@ static int make_room(const ted4_session *s, size_t n, ted4_camera_list *l, ted4_
     *view = calloc(n, sizeof **view);
     l->n = l->camera != NULL ? n : 0;
     return l->camera != NULL && *view != NULL ? TED4_EXIT_FINE : no_memory(s);
+}
+
+/* Checks that the scene has the frames of the keys, and that n pictures are not too many. Returns
+ * an exit code. */
+static int check_path(const ted4_session *s, const ted4_camera_list *keys, size_t n)
+{
+    char why[128];
+
+    for (size_t i = 0; i < keys->n; i++)
+        if (keys->camera[i].has_frame && keys->camera[i].frame >= s->info.frames)
+            return ted4_session_refused(s->set->path, "a frame that the scene does not have");
+    if (n <= TED4_MAX_VIEWS)
+        return TED4_EXIT_FINE;
+    snprintf(why, sizeof why, "the path would have %zu pictures; --views says how many, at most %d",
+             n, TED4_MAX_VIEWS);
+    return ted4_session_refused(s->set->input, why);
 }
 
 static int make_path(ted4_session *s)
@@ -98,16 +136,18 @@ static int make_path(ted4_session *s)
                      : s->info.frames > 1 ? s->info.frames
                                           : STILL_STEPS * gaps + 1;
 
-    for (size_t i = 0; i < keys.n && code == TED4_EXIT_FINE; i++)
-        if (keys.camera[i].has_frame && keys.camera[i].frame >= s->info.frames)
-            code = ted4_session_refused(set->path, "a frame that the scene does not have");
+    if (code == TED4_EXIT_FINE)
+        code = check_path(s, &keys, n);
     if (code == TED4_EXIT_FINE)
         code = make_room(s, n, &s->cameras, &view);
     if (code == TED4_EXIT_FINE) {
+        const int timed = have_times(s, &keys);
+
         ted4_path_between(&keys, n, view);
         for (size_t i = 0; i < n; i++)
             s->cameras.camera[i] =
-                (ted4_listed_camera) { .view = view[i], .time = path_time(s, &keys, i, n) };
+                (ted4_listed_camera) { .view = view[i],
+                                       .time = timed ? path_time(s, &keys, i, n) : playing(i, n) };
     }
     free(view);
     ted4_camera_list_free(&keys);
@@ -158,11 +198,24 @@ static int look_at_gaussians(ted4_session *s, double centre[3], double *distance
     return TED4_EXIT_FINE;
 }
 
-static int circle_of_gaussians(ted4_session *s, ted4_orbit *o)
+/* Puts the principal point of a lens into the middle of its picture. Returns half the angle of view
+ * across the picture, in radians, in the direction in which that is smaller. */
+static double centre_lens(ted4_view *lens)
+{
+    const double x = 0.5 * lens->width, y = 0.5 * lens->height;
+
+    lens->cx = (float)x;
+    lens->cy = (float)y;
+    return atan(fmin(x / (double)lens->fx, y / (double)lens->fy));
+}
+
+/* Sets a circle from which a lens has the Gaussians in its picture. half_view: half its angle of
+ * view, in radians. Returns an exit code. */
+static int circle_of_gaussians(ted4_session *s, double half_view, ted4_orbit *o)
 {
     double reach = 0.0;
     const int code = look_at_gaussians(s, o->centre, &reach);
-    const double distance = fmax(reach, 1e-6) / sin(HALF_VIEW);
+    const double distance = fmax(reach, 1e-6) / sin(half_view);
 
     o->radius = distance * cos(ELEVATION);
     o->height = distance * sin(ELEVATION);
@@ -196,7 +249,7 @@ static int make_orbit(ted4_session *s)
     if (code == TED4_EXIT_FINE && taken.n > 0 && ted4_orbit_pivot(&taken, o.centre) == 0)
         ted4_orbit_of_cameras(&taken, &o);
     else if (code == TED4_EXIT_FINE)
-        code = circle_of_gaussians(s, &o);
+        code = circle_of_gaussians(s, taken.n > 0 ? centre_lens(&o.lens) : HALF_VIEW, &o);
     if (code == TED4_EXIT_FINE)
         code = make_room(s, n, &s->cameras, &view);
     if (code == TED4_EXIT_FINE) {
