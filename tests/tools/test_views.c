@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "tool/camera_path.h"
+#include "tool/threads.h"
 #include "tool/views.h"
 #include "tool_files.h"
 
@@ -28,8 +29,10 @@ static void orbit_of(const char *name, ted4_session *s)
 
     *s = (ted4_session) { .set = &set, .info = file[1].info, .recon = file[1].recon };
     s->data = contents(name, &s->size);
+    ted4_threads_init(&s->parallel, 2);
     assert_int_equal(ted4_views_make(s), 0);
     assert_int_equal(s->cameras.n, 2);
+    ted4_threads_finish(&s->parallel);
     free(s->data);
 }
 
