@@ -3,6 +3,7 @@
 #include "data/clip.h"
 
 #include <stdlib.h>
+#include <string.h>
 #include "data/data_util.h"
 #include "data/picture_path.h"
 
@@ -11,18 +12,19 @@ static uint64_t number_of(const ted4_clip *clip, size_t i)
     return (uint64_t)ted4_picture_number(clip->pictures.names[i]);
 }
 
-/* Does every picture have a number, larger than that of the picture before? */
-static int has_numbers(const ted4_clip *clip)
+/* Returns the first picture without a number larger than that of the picture before, or
+ * pictures.n. */
+static size_t first_stray(const ted4_clip *clip)
 {
     double before = -1;
 
     for (size_t i = 0; i < clip->pictures.n; i++) {
         const double number = ted4_picture_number(clip->pictures.names[i]);
         if (number <= before)
-            return 0;
+            return i;
         before = number;
     }
-    return 1;
+    return clip->pictures.n;
 }
 
 static uint64_t common_divisor(uint64_t a, uint64_t b)
@@ -43,7 +45,7 @@ static int find_step(ted4_clips *c)
     for (const ted4_clip *clip = c->list; clip < c->list + c->n; clip++) {
         if (clip->is_video)
             continue;
-        if (!has_numbers(clip))
+        if (first_stray(clip) < clip->pictures.n)
             return 0;
         c->base = any && c->base < number_of(clip, 0) ? c->base : number_of(clip, 0);
         any = 1;
@@ -120,6 +122,41 @@ static size_t first_gap(const ted4_clip *clip)
     return i;
 }
 
+/* Does any picture have a larger number than the one before? Names such as f1_v2, f2_v2 have none,
+ * and are not meant to count by their last number. */
+static int rises(const ted4_clip *clip)
+{
+    for (size_t i = 1; i < clip->pictures.n; i++)
+        if (ted4_picture_number(clip->pictures.names[i]) >
+            ted4_picture_number(clip->pictures.names[i - 1]))
+            return 1;
+    return 0;
+}
+
+/* Names the picture for which numbers are not used, where other names seem to count. */
+static int say_stray(const ted4_clips *c, ted4_raw_scene *s)
+{
+    const ted4_clip *clip = c->list;
+
+    while (clip < c->list + c->n &&
+           (clip->is_video || first_stray(clip) == clip->pictures.n || !rises(clip)))
+        clip++;
+    if (clip == c->list + c->n)
+        return 0;
+    const size_t i = first_stray(clip);
+    char *const *name = clip->pictures.names + i;
+    const double number = ted4_picture_number(*name);
+    const char *before = number < 0 ? "" : strrchr(name[-1], '/') + 1;
+    return ted4_raw_scene_warn(s,
+                               "%.500s has %s%.200s%s: the numbers in names are not used, and the "
+                               "pictures of each clip are counted in their order",
+                               *name,
+                               number == -1   ? "no number"
+                               : number == -2 ? "a number of more than 15 digits"
+                                              : "no larger number than ",
+                               before, number < 0 ? "" : " before it");
+}
+
 static int say_gaps(const ted4_clips *c, ted4_raw_scene *s)
 {
     const ted4_clip *first = NULL;
@@ -167,6 +204,8 @@ int ted4_clips_say(const ted4_clips *c, int together, ted4_raw_scene *s, ted4_me
                                      "order instead",
                                      (unsigned long long)c->lacking,
                                      (unsigned long long)c->expected);
+    if (result == 0)
+        result = say_stray(c, s);
     if (result == 0)
         result = say_gaps(c, s);
     if (result == 0 && together)

@@ -50,19 +50,25 @@ static void describe(const ted4_dataset *d, char camera, tiny_string *s)
         }
 }
 
+static void assert_frames(const ted4_dataset *d, const char *expected)
+{
+    static tiny_string s;
+
+    s.n = 0;
+    s.text[0] = 0;
+    for (char c = 'a'; c <= 'd'; c++)
+        describe(d, c, &s);
+    assert_string_equal(s.text, expected);
+}
+
 /* Asserts which picture has which frame, and the only warning (NULL: none). */
 static void check(const tiny_folder *f, const ted4_dataset_options *o, const char *expected,
                   uint32_t n_frames, const char *warning)
 {
-    static tiny_string s;
     ted4_dataset d;
 
     assert_string_equal(tiny_load(&d, f, o), "");
-    s.n = 0;
-    s.text[0] = 0;
-    for (char c = 'a'; c <= 'd'; c++)
-        describe(&d, c, &s);
-    assert_string_equal(s.text, expected);
+    assert_frames(&d, expected);
     assert_int_equal(d.n_frames, n_frames);
     if (d.n_warnings > 0 && warning != NULL)
         assert_string_equal(d.warnings[0], warning);
@@ -153,6 +159,57 @@ static void test_numbers(void **state)
     }
 }
 
+#define STRAY(what)                                                                           \
+    what ": the numbers in names are not used, and the pictures of each clip are counted in " \
+         "their order"
+
+/* A single picture whose number does not fit switches counting off, and is named. */
+static void test_strays(void **state)
+{
+    static const struct {
+        const char *clips[2], *stray, *expected, *what;
+    } strays[] = {
+        { { "000 001 003", "001 002 003" },
+          "images/a/bg.png",
+          "abg:0 a000:1 a001:2 a003:3 b001:0 b002:1 b003:2",
+          "images/a/bg.png has no number" },
+        { { "0 1 3", "1 2 3" },
+          "images/b/cover.png",
+          "a0:0 a1:1 a3:2 b1:0 b2:1 b3:2 bcover:3",
+          "images/b/cover.png has no number" },
+        { { "0 1 3", "1 2 3" },
+          "images/b/2.PNG",
+          "a0:0 a1:1 a3:2 b1:0 b2:1 b2:2 b3:3",
+          "images/b/2.png has no larger number than 2.PNG before it" },
+        { { "x y z", "1 2 3" },
+          "images/b/all.png",
+          "ax:0 ay:1 az:2 b1:0 b2:1 b3:2 ball:3",
+          "images/b/all.png has no number" },
+        { { "0 1 2", "1 2" },
+          "images/b/1000000000000000.png",
+          "a0:0 a1:1 a2:2 b1:0 b2:1 b1000000000000000:2",
+          "images/b/1000000000000000.png has a number of more than 15 digits" },
+    };
+
+    (void)state;
+    for (size_t i = 0; i < sizeof strays / sizeof strays[0]; i++) {
+        tiny_folder f = tiny_new();
+        char text[800];
+        ted4_dataset d;
+
+        clip(&f, "images/a", strays[i].clips[0]), clip(&f, "images/b", strays[i].clips[1]);
+        tiny_picture(&f, strays[i].stray, TINY_W, TINY_H, 0);
+        cameras(&f, "", NULL, 2);
+        assert_string_equal(tiny_load(&d, &f, &tiny_options), "");
+        assert_true(d.n_warnings > 0);
+        snprintf(text, sizeof text, STRAY("%s/%s"), f.path, strays[i].what);
+        assert_string_equal(d.warnings[0], text);
+        assert_frames(&d, strays[i].expected);
+        ted4_dataset_free(&d);
+        tiny_free(&f);
+    }
+}
+
 /* A clip's start is the time of the scene's smallest number. Clips may end when they like. */
 static void test_starts(void **state)
 {
@@ -228,9 +285,8 @@ static void test_video(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_numbers),
-        cmocka_unit_test(test_starts),
-        cmocka_unit_test(test_most),
+        cmocka_unit_test(test_numbers), cmocka_unit_test(test_strays),
+        cmocka_unit_test(test_starts),  cmocka_unit_test(test_most),
         cmocka_unit_test(test_video),
     };
 
