@@ -262,6 +262,65 @@ static int split(ted4_raw_scene *s, ted4_message *m)
                           s->n_shots, s->n_missing, s->n_entries, s->first_missing);
 }
 
+/* Sorts equal paths in the order of the shots, which is that of the addresses. */
+static int by_path(const void *a, const void *b)
+{
+    const ted4_shot *x = *(const ted4_shot *const *)a, *y = *(const ted4_shot *const *)b;
+    const int order = strcmp(x->path, y->path);
+
+    return order != 0 ? order : (x > y) - (x < y);
+}
+
+/* Shots of pictures that an earlier shot has too. */
+typedef struct {
+    size_t n;
+    const char *first; /* by name */
+} repeated;
+
+static int say_repeated(ted4_raw_scene *s, const repeated *held_out, const repeated *other)
+{
+    int result = 0;
+
+    if (held_out->n > 0)
+        result = ted4_raw_scene_warn(
+            s,
+            held_out->n == 1 ? "%zu held-out picture is a training picture too: %s"
+                             : "%zu held-out pictures are training pictures too; the first: %s",
+            held_out->n, held_out->first);
+    if (other->n > 0 && result == 0)
+        result = ted4_raw_scene_warn(s,
+                                     other->n == 1
+                                         ? "%zu entry names a picture again: %s"
+                                         : "%zu entries name a picture again; the first: %s",
+                                     other->n, other->first);
+    return result;
+}
+
+/* Warns of pictures that are listed more than once: what is held out should not have been trained
+ * on. The training shots must come first. */
+static int say_twice(ted4_raw_scene *s, ted4_message *m)
+{
+    const ted4_shot **sorted = malloc(s->n_shots * sizeof *sorted), *first = NULL;
+    repeated held_out = { 0, NULL }, other = { 0, NULL };
+
+    if (sorted == NULL)
+        return ted4_say_no_memory(m);
+    for (size_t i = 0; i < s->n_shots; i++)
+        sorted[i] = &s->shots[i];
+    qsort(sorted, s->n_shots, sizeof *sorted, by_path);
+    for (size_t i = 0; i < s->n_shots; i++) {
+        if (first == NULL || strcmp(first->path, sorted[i]->path) != 0) {
+            first = sorted[i];
+            continue;
+        }
+        repeated *r = sorted[i]->is_test && !first->is_test ? &held_out : &other;
+        if (r->n++ == 0)
+            r->first = first->path;
+    }
+    free(sorted);
+    return say_repeated(s, &held_out, &other) == 0 ? 0 : ted4_say_no_memory(m);
+}
+
 /* Warns of entries that were skipped because their picture is missing, as other programs skip them
  * too. It is an error if no entry has a picture. */
 static int say_missing(ted4_raw_scene *s, ted4_message *m)
@@ -329,7 +388,8 @@ int ted4_build_dataset(ted4_dataset *d, ted4_raw_scene *s, const ted4_dataset_op
         return -1;
     if (ted4_raw_scene_label(s) != 0)
         return ted4_say_no_memory(m);
-    if ((o->n_hold_out > 0 && ted4_raw_scene_hold_out_named(s, o, m) != 0) || split(s, m) != 0)
+    if ((o->n_hold_out > 0 && ted4_raw_scene_hold_out_named(s, o, m) != 0) || split(s, m) != 0 ||
+        say_twice(s, m) != 0)
         return -1;
     d->layout = ted4_text_copy(s->layout);
     d->pictures = calloc(s->n_shots, sizeof *d->pictures);

@@ -242,6 +242,67 @@ static void test_files(void **state)
     tiny_free(&f);
 }
 
+/* Writes a file of n frames, frame i of which is the i-th word of names, at time from + i. */
+static void write_named(const tiny_folder *f, const char *file, const char *top, int from,
+                        const char *names)
+{
+    tiny_string s = { "", 0 };
+    char word[64];
+    int used = 0, n = 0;
+
+    tiny_add(&s, "{" ANGLE "%s \"frames\": [", top);
+    for (const char *at = names; sscanf(at, "%63s%n", word, &used) == 1; at += used, n++) {
+        tiny_picture(f, word, TINY_W, TINY_H, n);
+        tiny_add(&s, "%s{\"file_path\": \"%s\", \"time\": %d" POSE, n > 0 ? "," : "", word,
+                 from + n);
+    }
+    tiny_add(&s, "]}");
+    tiny_text(f, file, s.text);
+}
+
+/* Pictures that are held out and trained on, or listed several times, are told of. */
+static void test_twice(void **state)
+{
+    static const char *const hold_out[] = { "b.png" };
+    ted4_dataset_options named = tiny_options;
+    tiny_folder f = tiny_new();
+    ted4_dataset d;
+
+    (void)state;
+    write_named(&f, "transforms_train.json", "", 0, "b.png c.png a.png d.png");
+    write_named(&f, "transforms_test.json", "", 4, "e.png ./c.png f.png b.png");
+    assert_int_equal(
+        warned(&f, "2 held-out pictures are training pictures too; the first: ", "/b.png"), 8);
+    write_named(&f, "transforms_test.json", "", 4, "e.png f.png a.png");
+    assert_int_equal(warned(&f, "1 held-out picture is a training picture too: ", "/a.png"), 7);
+    write_named(&f, "transforms_test.json", "", 4, "e.png g.png e.png e.png");
+    assert_int_equal(warned(&f, "2 entries name a picture again; the first: ", "/e.png"), 8);
+    write_named(&f, "transforms_test.json", "", 4, "e.png f.png");
+    write_named(&f, "transforms_train.json", "", 0, "b.png c.png b.png d.png");
+    assert_int_equal(warned(&f, "1 entry names a picture again: ", "/b.png"), 6);
+    must(remove(tiny_path(&f, "transforms_test.json")) == 0, "test");
+    must(remove(tiny_path(&f, "transforms_train.json")) == 0, "train");
+    /* The fifth picture in the order of names is held out. */
+    write_named(&f, "transforms.json", "", 0, "c.png d.png d.png a.png e.png b.png");
+    assert_int_equal(warned(&f, "1 held-out picture is a training picture too: ", "/d.png"), 6);
+    write_named(&f, "transforms.json",
+                "\"train_filenames\": [\"a.png\"], \"test_filenames\": [\"./b.png\"],", 0,
+                "a.png b.png b.png");
+    expect(&f, 2, 1, "nerfstudio");
+    /* A camera that is held out by name may share its picture with another. */
+    named.hold_out = hold_out;
+    named.n_hold_out = 1;
+    tiny_text(&f, "transforms.json",
+              "{" ANGLE "\"frames\": [{\"file_path\": \"a.png\"" POSE
+              ", {\"file_path\": \"b.png\", \"camera\": \"b.png\"" POSE
+              ", {\"file_path\": \"b.png\", \"camera\": \"c\"" POSE "]}");
+    assert_string_equal(tiny_load(&d, &f, &named), "");
+    assert_int_equal(d.n_warnings, 1);
+    assert_non_null(strstr(d.warnings[0], "1 held-out picture is a training picture too: "));
+    ted4_dataset_free(&d);
+    tiny_free(&f);
+}
+
 /* Test times lie between training times, with or without a common step. */
 static void test_times(void **state)
 {
@@ -274,7 +335,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_lenses),        cmocka_unit_test(test_names),
         cmocka_unit_test(test_short_folders), cmocka_unit_test(test_files),
-        cmocka_unit_test(test_times),
+        cmocka_unit_test(test_twice),         cmocka_unit_test(test_times),
     };
 
     return cmocka_run_group_tests_name("transforms", tests, NULL, NULL);
