@@ -1,5 +1,6 @@
 /* camera_lens.c - see camera_lens.h. A focal length of the frame, in whatever form, goes before any
  * at the top of the file; at one level fl_x goes before a matrix, and a matrix before an angle.
+ * camera_angle_y stands for fl_y where there is neither fl_y nor a matrix.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "camera_lens.h"
 
@@ -15,7 +16,7 @@ enum { N_MATRICES = sizeof matrices / sizeof matrices[0] };
 
 typedef struct {
     const json_t *file, *frame;
-    double width, fx, fy, cx, cy, skew;
+    double width, height, fx, fy, cx, cy, skew;
     const char *wrong; /* of what failed */
 } lens;
 
@@ -78,25 +79,44 @@ static int matrix(lens *l, const json_t *level)
     return 1;
 }
 
+/* Reads an angle of view across size pixels, as a focal length. wrong: what to say of an angle that
+ * is none. Returns as number. */
+static int angle(lens *l, const json_t *level, const char *name, double size, double *f,
+                 const char *wrong)
+{
+    double v = 0;
+    const int found = number(l, level, name, &v);
+
+    if (found <= 0)
+        return found;
+    if (!(v > 0 && v < HALF_TURN))
+        return fail(l, wrong);
+    *f = 0.5 * size / tan(0.5 * v);
+    return found;
+}
+
 /* Reads the focal lengths, and the centre if a matrix gives it, of one level. Returns as number. */
 static int focal(lens *l, const json_t *level)
 {
-    double angle = 0;
     int found = number(l, level, "fl_x", &l->fx);
 
     /* fl_y at the top may be common to frames that each have their own fl_x. */
     if (found > 0 && json_object_get(l->file, "fl_y") == NULL)
         l->fy = l->fx;
-    if (found == 0)
+    if (found == 0) {
         found = matrix(l, level);
-    if (found != 0)
-        return found;
-    found = number(l, level, "camera_angle_x", &angle);
-    if (found > 0 && !(angle > 0 && angle < HALF_TURN))
-        return fail(l, "has a camera_angle_x that is not between 0 and pi");
-    if (found > 0)
-        l->fx = l->fy = 0.5 * l->width / tan(0.5 * angle);
-    return found;
+        if (found != 0)
+            return found;
+        found = angle(l, level, "camera_angle_x", l->width, &l->fx,
+                      "has a camera_angle_x that is not between 0 and pi");
+        if (found > 0)
+            l->fy = l->fx;
+    }
+    return found < 0 || json_object_get(level, "fl_y") != NULL ||
+                   angle(l, level, "camera_angle_y", l->height, &l->fy,
+                         "has a camera_angle_y that is not between 0 and pi") >= 0
+               ? found
+               : -1;
 }
 
 /* Reads the fields of one level that are single numbers. Returns 0 or -1. */
@@ -140,7 +160,8 @@ static int check_model(lens *l)
     if (model != NULL && (name == NULL || i == sizeof known / sizeof known[0]))
         return fail(l, "has a camera_model other than OPENCV or PINHOLE: only perspective cameras "
                        "are drawn");
-    return json_is_true(json_object_get(l->file, "is_fisheye"))
+    return json_is_true(json_object_get(l->file, "is_fisheye")) ||
+                   json_is_true(json_object_get(l->frame, "is_fisheye"))
                ? fail(l, "is_fisheye: only perspective cameras are drawn")
                : 0;
 }
@@ -176,9 +197,12 @@ static int check_distortion(lens *l, int *distorted)
 
 const char *ted4_camera_lens(const json_t *file, const json_t *frame, ted4_view *v, int *distorted)
 {
-    lens l = {
-        .file = file, .frame = frame, .width = v->width, .cx = 0.5 * v->width, .cy = 0.5 * v->height
-    };
+    lens l = { .file = file,
+               .frame = frame,
+               .width = v->width,
+               .height = v->height,
+               .cx = 0.5 * v->width,
+               .cy = 0.5 * v->height };
     const int own = has_focal(frame);
 
     if (check_model(&l) != 0)

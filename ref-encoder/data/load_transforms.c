@@ -216,6 +216,20 @@ static int read_cloud(ted4_transforms *t)
     return result;
 }
 
+/* Warns of nerfstudio's masks, which frames have, or the top of the file for all of them. */
+static int say_masks(ted4_transforms *t)
+{
+    static const char field[] = "mask_path";
+    const json_t *frames = json_object_get(t->root, "frames");
+    int found = json_is_string(json_object_get(t->root, field));
+
+    for (size_t i = 0; i < json_array_size(frames) && !found; i++)
+        found = json_is_string(json_object_get(json_array_get(frames, i), field));
+    return found && ted4_raw_scene_warn(t->scene, "%s: masks are not used (%s)", t->path, field)
+               ? ted4_say_no_memory(t->m)
+               : 0;
+}
+
 static int read_frames(ted4_transforms *t)
 {
     const json_t *frames = json_object_get(t->root, "frames");
@@ -398,7 +412,7 @@ static int read_root(ted4_transforms *t, int holds)
     if (!json_is_object(t->root))
         return ted4_say(t->m, "%s: expected an object with a list \"frames\"", t->path);
     if (read_applied(t) != 0 || read_frames(t) != 0 || (holds == BOTH && split(t) != 0) ||
-        read_cloud(t) != 0)
+        say_masks(t) != 0 || read_cloud(t) != 0)
         return -1;
     t->scene->layout = name_layout(t);
     t->scene->unit_cube = !has_focal(t->root);

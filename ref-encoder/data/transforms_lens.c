@@ -1,7 +1,8 @@
 /* transforms_lens.c - reads the lens of a frame of a transforms file from fl_x, fl_y, cx, cy; or K,
- * a 3x3 matrix (or fx fy cx cy) that may have several names; or camera_angle_x. A frame's own
- * fields take precedence over those at the top of the file. k1 k2 k3 p1 p2 are OpenCV's. Pixel
- * centres are at + 0.5, also in K.
+ * a 3x3 matrix (or fx fy cx cy) that may have several names; or camera_angle_x. camera_angle_y
+ * stands for fl_y where there is neither fl_y nor a matrix. A frame's own fields take precedence
+ * over those at the top of the file. k1 k2 k3 p1 p2 are OpenCV's. Pixel centres are at + 0.5, also
+ * in K.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "data/transforms.h"
 
@@ -48,8 +49,10 @@ static int check_model(ted4_transforms *t)
         i++;
     if (i == sizeof known / sizeof known[0])
         return ted4_say(t->m, "%s.camera_model: %s, expected OPENCV or PINHOLE", t->where, model);
-    if (json_is_true(json_object_get(t->root, "is_fisheye")))
-        return ted4_say(t->m, "%s.is_fisheye: true, expected a perspective camera", t->path);
+    const int above = json_is_true(json_object_get(t->root, "is_fisheye"));
+    if (above || json_is_true(json_object_get(t->frame, "is_fisheye")))
+        return ted4_say(t->m, "%s.is_fisheye: true, expected a perspective camera",
+                        above ? t->path : t->where);
     for (i = 0; i < sizeof foreign / sizeof foreign[0]; i++)
         if (number(t, foreign[i], &v) < 0)
             return -1;
@@ -97,18 +100,19 @@ static int read_matrix(ted4_transforms *t, const json_t *o, const char *where, t
     return 1;
 }
 
-/* Reads camera_angle_x. Returns as ted4_json_number. */
-static int read_angle(ted4_transforms *t, const json_t *o, const char *where, ted4_lens *l)
+/* Reads an angle of view across size pixels, as a focal length. Returns as ted4_json_number. */
+static int read_angle(ted4_transforms *t, const json_t *o, const char *where, const char *name,
+                      int size, double *focal)
 {
     double angle = 0;
-    const int found = ted4_json_number(o, where, "camera_angle_x", &angle, t->m);
+    const int found = ted4_json_number(o, where, name, &angle, t->m);
 
     if (found <= 0)
         return found;
     if (!(angle > 0 && angle < TED4_PI))
-        return ted4_say(t->m, "%s: camera_angle_x is %g, expected an angle between 0 and pi",
-                        t->where, angle);
-    l->fx = l->fy = 0.5 * l->width / ted4_math_tan(0.5 * angle);
+        return ted4_say(t->m, "%s: %s is %g, expected an angle between 0 and pi", t->where, name,
+                        angle);
+    *focal = 0.5 * size / ted4_math_tan(0.5 * angle);
     return found;
 }
 
@@ -121,11 +125,18 @@ static int read_focal(ted4_transforms *t, const json_t *o, const char *where, te
     /* fl_y at the top may be common to frames that each have their own fl_x. */
     if (found > 0 && json_object_get(t->root, "fl_y") == NULL)
         l->fy = l->fx;
-    if (found == 0)
+    if (found == 0) {
         found = read_matrix(t, o, where, l);
-    if (found == 0)
-        found = read_angle(t, o, where, l);
-    return found;
+        if (found != 0)
+            return found;
+        found = read_angle(t, o, where, "camera_angle_x", l->width, &l->fx);
+        if (found > 0)
+            l->fy = l->fx;
+    }
+    return found < 0 || json_object_get(o, "fl_y") != NULL ||
+                   read_angle(t, o, where, "camera_angle_y", l->height, &l->fy) >= 0
+               ? found
+               : -1;
 }
 
 /* Reads the fields of one level that are single numbers. */

@@ -75,6 +75,7 @@ static void test_lenses(void **state)
         { ", \"intrinsics\": [22, 23, 6, 4]", 13, 9, 22, 23, 6, 4 },
         { ", \"camera_angle_x\": 1", 16, 10, third, third, 8, 5 },
         { ", \"camera_angle_x\": 0.5, \"cx\": 9", 20, 10, half, half, 9, 5 },
+        { ", \"camera_angle_x\": 0.5, \"camera_angle_y\": 1", 20, 16, half, third, 10, 8 },
     };
     /* A frame's own matrix overrides all top-level fields for focal length and centre; a single
      * field of a frame overrides that field. */
@@ -87,7 +88,7 @@ static void test_lenses(void **state)
     tiny_folder f = tiny_new();
 
     (void)state;
-    check_lenses(&f, "", own, 7);
+    check_lenses(&f, "", own, 8);
     check_lenses(&f, "\"fl_x\": 40.5, \"fl_y\": 41, \"cx\": 7, \"w\": 16, \"h\": 12,", above, 4);
     tiny_free(&f);
 }
@@ -260,6 +261,36 @@ static void write_named(const tiny_folder *f, const char *file, const char *top,
     tiny_text(f, file, s.text);
 }
 
+/* Masks, which are not used, are told of once for each file. */
+static void test_masks(void **state)
+{
+    tiny_folder f = tiny_new();
+    ted4_dataset d;
+    char name[600];
+
+    (void)state;
+    tiny_picture(&f, "a.png", TINY_W, TINY_H, 0), tiny_picture(&f, "b.png", TINY_W, TINY_H, 0);
+    tiny_text(&f, "transforms.json",
+              "{" ANGLE "\"frames\": [{\"file_path\": \"a.png\", \"mask_path\": \"m/a.png\"" POSE
+              ", {\"file_path\": \"b.png\", \"mask_path\": \"m/b.png\"" POSE "]}");
+    snprintf(name, sizeof name, "%s: masks are not used (mask_path)",
+             tiny_path(&f, "transforms.json"));
+    d = load(&f);
+    assert_int_equal(d.n_warnings, 1);
+    assert_string_equal(d.warnings[0], name);
+    ted4_dataset_free(&d);
+    tiny_text(&f, "transforms.json",
+              "{" ANGLE "\"mask_path\": \"m.png\", \"frames\": [{\"file_path\": \"a.png\"" POSE
+              ", {\"file_path\": \"b.png\"" POSE "]}");
+    assert_int_equal(warned(&f, "transforms.json: ", "masks are not used (mask_path)"), 2);
+    tiny_text(&f, "transforms.json",
+              "{" ANGLE "\"frames\": [{\"file_path\": \"a.png\", \"mask_path\": null" POSE "]}");
+    d = load(&f);
+    assert_int_equal(d.n_warnings, 0);
+    ted4_dataset_free(&d);
+    tiny_free(&f);
+}
+
 /* Pictures that are held out and trained on, or listed several times, are told of. */
 static void test_twice(void **state)
 {
@@ -335,7 +366,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_lenses),        cmocka_unit_test(test_names),
         cmocka_unit_test(test_short_folders), cmocka_unit_test(test_files),
-        cmocka_unit_test(test_twice),         cmocka_unit_test(test_times),
+        cmocka_unit_test(test_masks),         cmocka_unit_test(test_twice),
+        cmocka_unit_test(test_times),
     };
 
     return cmocka_run_group_tests_name("transforms", tests, NULL, NULL);

@@ -61,8 +61,9 @@ static int read_lens(const char *top, const char *frame, ted4_lens *l)
     return result;
 }
 
-#define ANGLE  "\"camera_angle_x\": 0.9,"
-#define K_LIST "\"K\": [[200, 0, 30], [0, 210, 20], [0, 0, 1]],"
+#define ANGLE   "\"camera_angle_x\": 0.9,"
+#define ANGLE_Y "\"camera_angle_y\": 0.5,"
+#define K_LIST  "\"K\": [[200, 0, 30], [0, 210, 20], [0, 0, 1]],"
 
 static const struct {
     const char *top, *frame;
@@ -88,6 +89,17 @@ static const struct {
     { "\"camera_model\": \"OPENCV\", \"fl_x\": 80,", "\"p2\": 0.001,", 1 },
     { "", "\"K\": [70, 2, 31, 0, 71, 23, 0, 0, 1],", 1 },
     { "\"camera_model\": \"OPENCV_FISHEYE\", \"fl_x\": 80,", "\"camera_model\": \"PINHOLE\",", 0 },
+    { "\"is_fisheye\": false, \"fl_x\": 80,", "\"is_fisheye\": false,", 0 },
+    { ANGLE ANGLE_Y, "", 0 },
+    { "", ANGLE ANGLE_Y, 0 },
+    { ANGLE ANGLE_Y "\"fl_y\": 90,", "", 0 },
+    { ANGLE ANGLE_Y, "\"fl_y\": 90,", 0 },
+    { ANGLE ANGLE_Y, "\"fl_x\": 90,", 0 },
+    { ANGLE ANGLE_Y, ANGLE, 0 },
+    { ANGLE, ANGLE_Y, 0 },
+    { "\"fl_x\": 80," ANGLE ANGLE_Y, "", 0 },
+    { "\"fl_x\": 80, \"fl_y\": 90, \"camera_angle_y\": 7,", "", 0 },
+    { K_LIST ANGLE_Y, "", 0 },
 };
 
 static void test_same(void **state)
@@ -125,6 +137,12 @@ static const struct {
     { "\"fl_x\": 80,", "\"camera_model\": \"EQUIRECTANGULAR\",", "frame 0 has a camera_model" },
     { "\"fl_x\": 80, \"camera_model\": 1,", "", "frame 0 has a camera_model" },
     { "\"fl_x\": 80, \"is_fisheye\": true,", "", "frame 0 is_fisheye" },
+    { "\"fl_x\": 80,", "\"is_fisheye\": true,", "frame 0 is_fisheye" },
+    { "\"fl_x\": 80, \"is_fisheye\": true,", "\"is_fisheye\": false,", "frame 0 is_fisheye" },
+    { ANGLE "\"camera_angle_y\": 3.2,", "", "frame 0 has a camera_angle_y" },
+    { ANGLE, "\"camera_angle_y\": 0,", "frame 0 has a camera_angle_y" },
+    { ANGLE "\"camera_angle_y\": \"1\",", "", "frame 0 has a lens with a field that" },
+    { ANGLE_Y, "", "frame 0 needs fl_x, K or camera_angle_x" },
     { "\"fl_x\": 80, \"k4\": 0.1,", "", "frame 0 has k4, k5 or k6" },
 };
 
