@@ -211,6 +211,66 @@ static int number_frames(ted4_dataset *d, ted4_raw_scene *s, ted4_message *m)
     return result;
 }
 
+typedef struct {
+    const char *name; /* not terminated */
+    size_t length;
+    double time;
+} named;
+
+static int compare_names(const named *x, const named *y)
+{
+    const size_t shorter = x->length < y->length ? x->length : y->length;
+    const int order = memcmp(x->name, y->name, shorter);
+
+    return order != 0 ? order : (x->length > y->length) - (x->length < y->length);
+}
+
+static int by_name(const void *a, const void *b)
+{
+    const named *x = a, *y = b;
+    const int order = compare_names(x, y);
+
+    return order != 0 ? order : (x->time > y->time) - (x->time < y->time);
+}
+
+/* Warns of cameras that have a name but no picture up to the time last. Where the layout gives no
+ * times, a camera of a single picture is one that COLMAP made for it. Returns 0, or -1 if memory
+ * runs out. */
+static int say_lost(ted4_raw_scene *s, uint32_t most, double last)
+{
+    named *list = malloc(s->n_shots * sizeof *list);
+    const named *first = NULL;
+    size_t n = 0, lost = 0;
+
+    if (list == NULL)
+        return -1;
+    for (size_t i = 0; i < s->n_shots; i++) {
+        if (s->shots[i].camera == NULL)
+            continue;
+        list[n].name = ted4_camera_name(s->shots[i].camera, &list[n].length);
+        list[n++].time = s->shots[i].time;
+    }
+    qsort(list, n, sizeof *list, by_name);
+    for (size_t i = 0, end; i < n; i = end) {
+        for (end = i + 1; end < n && compare_names(&list[i], &list[end]) == 0; end++)
+            ;
+        if (list[i].time > last && (s->timed || end > i + 1) && lost++ == 0)
+            first = &list[i];
+    }
+    const int result =
+        lost == 0   ? 0
+        : lost == 1 ? ted4_raw_scene_warn(s,
+                                          "--max-frames %u leaves out camera %.*s, which has no "
+                                          "picture in the first times",
+                                          (unsigned)most, (int)first->length, first->name)
+                    : ted4_raw_scene_warn(s,
+                                          "--max-frames %u leaves out %zu cameras, which have no "
+                                          "picture in the first times; the first: %.*s",
+                                          (unsigned)most, lost, (int)first->length, first->name);
+    free(list);
+    return result;
+}
+
 /* Keeps the shots of the first most distinct times, in their order. */
 static int keep_first_times(ted4_raw_scene *s, uint32_t most, ted4_message *m)
 {
@@ -223,6 +283,9 @@ static int keep_first_times(ted4_raw_scene *s, uint32_t most, ted4_message *m)
         sorted[i] = s->shots[i].time;
     n = ted4_distinct_times(sorted, s->n_shots);
     const double last = n > most ? sorted[most - 1] : sorted[n - 1];
+    free(sorted);
+    if (say_lost(s, most, last) != 0)
+        return ted4_say_no_memory(m);
     for (size_t i = 0; i < s->n_shots; i++) {
         if (s->shots[i].time > last) {
             free(s->shots[i].path);
@@ -232,7 +295,6 @@ static int keep_first_times(ted4_raw_scene *s, uint32_t most, ted4_message *m)
         }
     }
     s->n_shots = kept;
-    free(sorted);
     return 0;
 }
 

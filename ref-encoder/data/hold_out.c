@@ -34,9 +34,7 @@ int ted4_raw_scene_label(ted4_raw_scene *s)
     return 0;
 }
 
-/* COLMAP's labels read NUMBER/FOLDER/. The folder alone is enough as a name, or the number if there
- * is no folder. */
-static const char *short_label(const char *label, size_t *n)
+const char *ted4_camera_name(const char *label, size_t *n)
 {
     const char *slash = strchr(label, '/'),
                *folder = slash != NULL && slash[1] != 0 ? slash + 1 : label;
@@ -50,7 +48,7 @@ static const char *short_label(const char *label, size_t *n)
 static int is_short_label(const ted4_shot *s, const char *name)
 {
     size_t n;
-    const char *label = short_label(s->camera, &n);
+    const char *label = ted4_camera_name(s->camera, &n);
 
     return strlen(name) == n && strncmp(label, name, n) == 0;
 }
@@ -84,7 +82,7 @@ static int is_shared(const ted4_raw_scene *s, const ted4_shot *shot, const char 
 static const char *name_of(const ted4_raw_scene *s, const ted4_shot *shot, size_t *n)
 {
     if (!shot->is_posed)
-        return short_label(shot->camera, n);
+        return ted4_camera_name(shot->camera, n);
     const char *name = shot->path + strlen(shot->path);
     do {
         for (name--; name > shot->path && name[-1] != '/'; name--)
@@ -103,7 +101,8 @@ static int same_name(const ted4_shot *a, const ted4_shot *b)
     if (a->is_posed || b->is_posed)
         return strcmp(a->camera, b->camera) == 0;
 
-    const char *const name = short_label(a->camera, &n), *const other = short_label(b->camera, &k);
+    const char *const name = ted4_camera_name(a->camera, &n), *const other =
+                                                                  ted4_camera_name(b->camera, &k);
 
     return n == k && memcmp(name, other, n) == 0;
 }

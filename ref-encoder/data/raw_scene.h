@@ -75,6 +75,10 @@ void ted4_raw_scene_hold_out(ted4_raw_scene *s);
  * runs out. */
 int ted4_raw_scene_label(ted4_raw_scene *s);
 
+/* hold_out.c: returns what a camera is called for short, and its length *n. COLMAP's labels read
+ * NUMBER/FOLDER/; the folder alone is enough as a name, or the number if there is no folder. */
+const char *ted4_camera_name(const char *label, size_t *n);
+
 /* hold_out.c: marks exactly the shots of the cameras named in o->hold_out as test. All shots must
  * have labels. Returns 0, or -1 with *m filled. */
 int ted4_raw_scene_hold_out_named(ted4_raw_scene *s, const ted4_dataset_options *o,

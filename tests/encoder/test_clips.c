@@ -203,6 +203,16 @@ static void test_starts(void **state)
     d = load(&f, &o);
     assert_int_equal(d.n_frames, 5);
     assert_int_equal(d.n_pictures, 7);
+    assert_int_equal(d.n_warnings, 1);
+    assert_string_equal(d.warnings[0], "--max-frames 5 leaves out camera b, which has no picture "
+                                       "in the first times");
+    ted4_dataset_free(&d);
+    o.max_frames = 1;
+    d = load(&f, &o);
+    assert_int_equal(d.n_pictures, 1);
+    assert_int_equal(d.n_warnings, 1);
+    assert_string_equal(d.warnings[0], "--max-frames 1 leaves out 2 cameras, which have no picture "
+                                       "in the first times; the first: b");
     ted4_dataset_free(&d);
     tiny_text(&f, "cams.json",
               "{\"fps\": 30, \"cameras\": [{\"name\": \"a\", \"start\": 0.05, " CAMERA

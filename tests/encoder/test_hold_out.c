@@ -173,6 +173,56 @@ static void test_folders(void **state)
     tiny_free(&f);
 }
 
+/* Asserts what is said of cameras when only the first times are kept; NULL: nothing. */
+static void lost(const tiny_folder *f, uint32_t most, const char *warning)
+{
+    ted4_dataset_options o = tiny_options;
+    ted4_dataset d;
+
+    o.max_frames = most;
+    assert_string_equal(tiny_load(&d, f, &o), "");
+    assert_int_equal(d.n_warnings, warning != NULL);
+    if (warning != NULL)
+        assert_string_equal(d.warnings[0], warning);
+    ted4_dataset_free(&d);
+}
+
+/* Writes a COLMAP scene of four pictures at different times, each with a camera of its own. */
+static tiny_folder write_colmap(const char *const pictures[4])
+{
+    tiny_folder f = tiny_new();
+    tiny_string cameras = { "", 0 }, images = { "", 0 };
+
+    for (int i = 0; i < 4; i++) {
+        char path[32];
+
+        snprintf(path, sizeof path, "images/%s", pictures[i]);
+        tiny_picture(&f, path, TINY_W, TINY_H, i);
+        tiny_add(&cameras, "%d SIMPLE_PINHOLE 16 12 9 8 6\n", i);
+        tiny_add(&images, "%d 1 0 0 0 0 0 0 %d %s\n\n", i, i, pictures[i]);
+    }
+    tiny_text(&f, "sparse/0/cameras.txt", cameras.text);
+    tiny_text(&f, "sparse/0/images.txt", images.text);
+    return f;
+}
+
+/* Cameras that have no picture in the first times are told of by the names that hold them out.
+ * COLMAP's cameras that belong to single pictures are not. */
+static void test_lost(void **state)
+{
+    static const char *const folders[] = { "left/0.png", "left/1.png", "right/2.png",
+                                           "right/3.png" },
+                             *const single[] = { "0.png", "1.png", "2.png", "3.png" };
+    tiny_folder f = write_colmap(folders), g = write_colmap(single);
+
+    (void)state;
+    lost(&f, 3, NULL);
+    lost(&f, 1, "--max-frames 1 leaves out camera right, which has no picture in the first times");
+    lost(&g, 2, NULL);
+    tiny_free(&f);
+    tiny_free(&g);
+}
+
 /* Pictures that the layout's own split leaves out are used again. Holding out all cameras is an
  * error, since nothing would remain. */
 static void test_whole(void **state)
@@ -225,7 +275,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = { cmocka_unit_test(test_labels),
                                         cmocka_unit_test(test_pictures),
-                                        cmocka_unit_test(test_folders),
+                                        cmocka_unit_test(test_folders), cmocka_unit_test(test_lost),
                                         cmocka_unit_test(test_whole) };
 
     return cmocka_run_group_tests_name("hold out", tests, NULL, NULL);
