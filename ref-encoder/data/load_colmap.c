@@ -6,6 +6,7 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "data/raw_scene.h"
 
+#include <dirent.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,23 +15,37 @@
 #include "data/picture_path.h"
 #include "math/compare.h"
 
+static int has_cameras(const char *model)
+{
+    static const char *const files[] = { "cameras.bin", "cameras.txt" };
+    int found = 0;
+
+    for (size_t i = 0; i < sizeof files / sizeof files[0] && !found; i++) {
+        char *file = ted4_path_join(model, files[i]);
+        found = file != NULL && ted4_is_file(file);
+        free(file);
+    }
+    return found;
+}
+
+/* Returns folder/name if it holds a model, else NULL. Owned by the caller. */
+static char *model_in(const char *folder, const char *name)
+{
+    char *model = ted4_path_join(folder, name);
+
+    if (model != NULL && has_cameras(model))
+        return model;
+    free(model);
+    return NULL;
+}
+
 /* Returns folder/sparse/0 or folder/sparse, whichever holds cameras.*, or NULL if neither does.
  * Owned by the caller. */
 static char *find_model(const char *folder)
 {
-    static const char *const places[] = { "sparse/0", "sparse" };
-    static const char *const files[] = { "cameras.bin", "cameras.txt" };
+    char *model = model_in(folder, "sparse/0");
 
-    for (size_t i = 0; i < 4; i++) {
-        char *place = ted4_path_join(folder, places[i / 2]);
-        char *file = place == NULL ? NULL : ted4_path_join(place, files[i % 2]);
-        const int found = file != NULL && ted4_is_file(file);
-        free(file);
-        if (found)
-            return place;
-        free(place);
-    }
-    return NULL;
+    return model != NULL ? model : model_in(folder, "sparse");
 }
 
 /* Says why no model was found. */
@@ -149,6 +164,73 @@ static int add_images(ted4_raw_scene *s, ted4_colmap *c, const char *images, ted
     return rank_numbers(s, m);
 }
 
+/* What is counted in images/. */
+typedef struct {
+    const ted4_colmap *model;
+    size_t there, unlisted;
+} census;
+
+static int by_name(const void *name, const void *image)
+{
+    return strcmp(name, ((const ted4_colmap_image *)image)->name);
+}
+
+/* Folders in images/ are one for each camera, perhaps in one for each day or place. The bound keeps
+ * links in circles from being followed for ever. */
+enum { DEEPEST = 4 };
+
+/* Counts the pictures in a folder and the folders in it. prefix: what the model's names begin with
+ * here. Returns 0, or -1 if memory runs out. */
+static int count_pictures(census *k, const char *folder, const char *prefix, int depth)
+{
+    DIR *d = opendir(folder);
+    int result = 0;
+
+    for (struct dirent *e = d == NULL ? NULL : readdir(d); e != NULL && result == 0;
+         e = readdir(d)) {
+        if (e->d_name[0] == '.')
+            continue;
+        const size_t size = strlen(prefix) + strlen(e->d_name) + 2;
+        char *path = ted4_path_join(folder, e->d_name), *name = malloc(size);
+        if (path == NULL || name == NULL) {
+            result = -1;
+        } else if (ted4_is_folder(path) && depth < DEEPEST) {
+            snprintf(name, size, "%s%s/", prefix, e->d_name);
+            result = count_pictures(k, path, name, depth + 1);
+        } else if (ted4_picture_is_named(e->d_name) && ted4_is_file(path)) {
+            snprintf(name, size, "%s%s", prefix, e->d_name);
+            k->there++;
+            k->unlisted += bsearch(name, k->model->images, k->model->n_images,
+                                   sizeof *k->model->images, by_name) == NULL;
+        }
+        free(path);
+        free(name);
+    }
+    if (d != NULL)
+        closedir(d);
+    return result;
+}
+
+/* Warns of pictures that the model lacks, and of a further model, which COLMAP writes where it did
+ * not find how pictures hang together. Returns 0, or -1 if memory runs out. */
+static int say_unlisted(ted4_raw_scene *s, const ted4_colmap *c, const char *folder,
+                        const char *images, const char *model)
+{
+    census k = { .model = c };
+
+    if (c->n_images > 0 && count_pictures(&k, images, "", 0) != 0)
+        return -1;
+    if (k.unlisted == 0)
+        return 0;
+    char *other = model_in(folder, "sparse/1");
+    const int result = ted4_raw_scene_warn(
+        s, "%zu of %zu pictures in %.300s %s not in the model %.300s%s%.300s%s", k.unlisted,
+        k.there, images, k.unlisted == 1 ? "is" : "are", model, other != NULL ? "; the model " : "",
+        other != NULL ? other : "", other != NULL ? " is not used" : "");
+    free(other);
+    return result;
+}
+
 /* Returns images/, or if it does not exist, a reduced copy images_N: the one with the requested
  * reduction, else the least reduced. Owned by the caller. Returns NULL with *m filled on
  * failure. */
@@ -188,6 +270,9 @@ int ted4_load_colmap(ted4_raw_scene *s, const char *folder, ted4_message *m)
         result = -1;
     if (result == 0)
         result = add_images(s, &c, images, m);
+    /* The names of reduced copies may differ from those of the model. */
+    if (result == 0 && s->reduced == 1 && say_unlisted(s, &c, folder, images, model) != 0)
+        result = ted4_say_no_memory(m);
     if (result == 0 && c.cloud.n > 0) {
         s->cloud = c.cloud;
         memset(&c.cloud, 0, sizeof c.cloud);

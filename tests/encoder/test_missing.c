@@ -126,6 +126,58 @@ static void test_colmap(void **state)
     tiny_free(&f);
 }
 
+/* Pictures that the model lacks are counted, and another model beside it is named. */
+static void test_unlisted(void **state)
+{
+    static const char *const listed[] = { "a/0.png", "a/1.png", "b/0.png" }, *const more[] = {
+        "a/1.jpg", "b/deep/1.png", "2.png", "a/.3.png"
+    };
+    tiny_folder f = tiny_new();
+    tiny_string s = { "", 0 };
+    ted4_dataset d;
+    char text[700];
+
+    (void)state;
+    tiny_text(&f, "sparse/0/cameras.txt", "1 PINHOLE 16 12 9 9 8 6\n");
+    for (int i = 0; i < 3; i++) {
+        snprintf(text, sizeof text, "images/%s", listed[i]);
+        tiny_picture(&f, text, TINY_W, TINY_H, i);
+        tiny_add(&s, "%d 1 0 0 0 %d 0 0 1 %s\n\n", i, i, listed[i]);
+    }
+    tiny_text(&f, "sparse/0/images.txt", s.text);
+    tiny_text(&f, "sparse/1/cameras.txt", "1 PINHOLE 16 12 9 9 8 6\n");
+    tiny_text(&f, "images/readme.txt", "");
+    must(mkdir(tiny_path(&f, "images/c.png"), 0777) == 0, "c.png");
+    assert_string_equal(tiny_load(&d, &f, &tiny_options), "");
+    assert_int_equal(d.n_warnings, 0);
+    ted4_dataset_free(&d);
+    for (int i = 0; i < 4; i++) {
+        snprintf(text, sizeof text, "images/%s", more[i]);
+        tiny_picture(&f, text, TINY_W, TINY_H, i);
+    }
+    assert_string_equal(tiny_load(&d, &f, &tiny_options), "");
+    assert_int_equal(d.n_warnings, 1);
+    snprintf(text, sizeof text,
+             "3 of 6 pictures in %s are not in the model %s; the model %s is not used",
+             tiny_path(&f, "images"), tiny_path(&f, "sparse/0"), tiny_path(&f, "sparse/1"));
+    assert_string_equal(d.warnings[0], text);
+    ted4_dataset_free(&d);
+    gone(&f, "images/a/1.jpg"), gone(&f, "images/2.png");
+    gone(&f, "sparse/1/cameras.txt");
+    snprintf(text, sizeof text, "1 of 4 pictures in %s is not in the model %s",
+             tiny_path(&f, "images"), tiny_path(&f, "sparse/0"));
+    assert_string_equal(tiny_load(&d, &f, &tiny_options), "");
+    assert_int_equal(d.n_warnings, 1);
+    assert_string_equal(d.warnings[0], text);
+    ted4_dataset_free(&d);
+    /* Reduced copies are not looked at: they may be of another format than the model says. */
+    must(rename(tiny_path(&f, "images"), tiny_path(&f, "images_2")) == 0, "images_2");
+    assert_string_equal(tiny_load(&d, &f, &tiny_options), "");
+    assert_int_equal(d.n_warnings, 0);
+    ted4_dataset_free(&d);
+    tiny_free(&f);
+}
+
 static void test_hypernerf(void **state)
 {
     static const char camera[] = "{\"orientation\": [[1,0,0],[0,1,0],[0,0,1]], \"position\": "
@@ -186,7 +238,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_transforms),  cmocka_unit_test(test_lists),
         cmocka_unit_test(test_colmap),      cmocka_unit_test(test_hypernerf),
-        cmocka_unit_test(test_calibration),
+        cmocka_unit_test(test_calibration), cmocka_unit_test(test_unlisted),
     };
 
     return cmocka_run_group_tests_name("missing pictures", tests, NULL, NULL);
