@@ -11,6 +11,7 @@
 
 json_t *ted4_json_load(const char *path, char *why, size_t why_size)
 {
+    static const uint8_t mark[] = { 0xef, 0xbb, 0xbf };
     json_error_t e;
     size_t size;
     uint8_t *const data = ted4_read_file(path, &size);
@@ -20,7 +21,9 @@ json_t *ted4_json_load(const char *path, char *why, size_t why_size)
         snprintf(why, why_size, "%s", strerror(errno));
         return NULL;
     }
-    json = json_loadb((const char *)data, size, JSON_REJECT_DUPLICATES, &e);
+    const size_t skipped = size >= sizeof mark && memcmp(data, mark, sizeof mark) == 0 ? sizeof mark
+                                                                                       : 0;
+    json = json_loadb((const char *)data + skipped, size - skipped, JSON_REJECT_DUPLICATES, &e);
     if (json == NULL)
         snprintf(why, why_size, "line %d: %s", e.line, e.text);
     free(data);

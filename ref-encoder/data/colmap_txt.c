@@ -29,7 +29,8 @@ static int start(text_reader *r, const char *path, ted4_message *m)
     if (ted4_read_whole(path, &bytes, &size, m) != 0)
         return -1;
     r->path = path;
-    r->text = r->next = (char *)bytes; /* ends in a zero byte */
+    r->text = (char *)bytes; /* ends in a zero byte */
+    r->next = r->text + ted4_mark_size(bytes, size);
     return 0;
 }
 

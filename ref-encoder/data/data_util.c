@@ -122,6 +122,13 @@ int ted4_read_whole(const char *path, uint8_t **bytes, size_t *size, ted4_messag
     return 0;
 }
 
+size_t ted4_mark_size(const uint8_t *bytes, size_t size)
+{
+    static const uint8_t mark[] = { 0xef, 0xbb, 0xbf };
+
+    return size >= sizeof mark && memcmp(bytes, mark, sizeof mark) == 0 ? sizeof mark : 0;
+}
+
 double ted4_det3(const double A[9])
 {
     return A[0] * (A[4] * A[8] - A[5] * A[7]) - A[1] * (A[3] * A[8] - A[5] * A[6]) +

@@ -37,6 +37,10 @@ int ted4_may_read(const char *folder, ted4_message *m);
  * caller. Returns 0, or -1 with *m filled. */
 int ted4_read_whole(const char *path, uint8_t **bytes, size_t *size, ted4_message *m);
 
+/* Returns the number of bytes of the mark with which some editors begin a text in UTF-8: 3, or 0 if
+ * there is none. */
+size_t ted4_mark_size(const uint8_t *bytes, size_t size);
+
 /* Largest deviation of a given rotation from orthonormal. Files print 6 digits or more. */
 #define TED4_ROTATION_TOLERANCE 1e-3
 

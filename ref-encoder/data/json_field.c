@@ -15,7 +15,8 @@ json_t *ted4_json_read(const char *path, ted4_message *m)
 
     if (ted4_read_whole(path, &text, &size, m) != 0)
         return NULL;
-    json_t *root = json_loadb((const char *)text, size, JSON_REJECT_DUPLICATES, &e);
+    const size_t mark = ted4_mark_size(text, size);
+    json_t *root = json_loadb((const char *)text + mark, size - mark, JSON_REJECT_DUPLICATES, &e);
     free(text);
     if (root == NULL)
         ted4_say(m, "%s:%d: not valid JSON: %s", path, e.line, e.text);

@@ -7,8 +7,8 @@
 #include <stddef.h>
 #include "data/dataset.h"
 
-/* Parses a file; duplicate keys are refused. The caller must json_decref() the result. Returns NULL
- * with *m "file:line: what" on failure. */
+/* Parses a file; duplicate keys are refused, and a byte order mark is skipped. The caller must
+ * json_decref() the result. Returns NULL with *m "file:line: what" on failure. */
 json_t *ted4_json_read(const char *path, ted4_message *m);
 
 /* In all functions below, where ("file: frames[12]" or "file") is the beginning of messages. They

@@ -129,7 +129,7 @@ static void test_colmap(void **state)
 /* Pictures that the model lacks are counted, and another model beside it is named. */
 static void test_unlisted(void **state)
 {
-    static const char *const listed[] = { "a/0.png", "a/1.png", "b/0.png" }, *const more[] = {
+    static const char *const listed[] = { "a/0.png", "a/1.png", "b/deep/0.png" }, *const more[] = {
         "a/1.jpg", "b/deep/1.png", "2.png", "a/.3.png"
     };
     tiny_folder f = tiny_new();
@@ -148,6 +148,7 @@ static void test_unlisted(void **state)
     tiny_text(&f, "sparse/1/cameras.txt", "1 PINHOLE 16 12 9 9 8 6\n");
     tiny_text(&f, "images/readme.txt", "");
     must(mkdir(tiny_path(&f, "images/c.png"), 0777) == 0, "c.png");
+    must(symlink("nowhere.png", tiny_path(&f, "images/d.png")) == 0, "d.png");
     assert_string_equal(tiny_load(&d, &f, &tiny_options), "");
     assert_int_equal(d.n_warnings, 0);
     ted4_dataset_free(&d);

@@ -1,6 +1,6 @@
 /* test_scene_input.c - scenes as users supply them: JPEGs with an EXIF orientation, JPEGs with four
  * components, nerfstudio's own lists of the split, more frames than requested, pictures that change
- * or disappear while they are in use, damaged pictures.
+ * or disappear while they are in use, damaged pictures, byte order marks.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <stdio.h>
 #include <jpeglib.h>
@@ -257,6 +257,63 @@ static void test_max_frames(void **state)
     tiny_free(&f);
 }
 
+/* ---- byte order marks ---- */
+
+#define MARK "\xef\xbb\xbf"
+
+/* Puts a mark before a text file. */
+static void mark(const tiny_folder *f, const char *name, const char *text)
+{
+    tiny_string s = { "", 0 };
+
+    tiny_add(&s, MARK "%s", text);
+    tiny_text(f, name, s.text);
+}
+
+static void test_marked_json(void **state)
+{
+    static const char transforms[] = "{\"fl_x\": 9, \"frames\": [{\"file_path\": \"0.png\", "
+                                     "\"transform_matrix\": " TINY_POSE "}]}";
+    static const char *const broken[] = { MARK, "\xef\xbb", "\xef", "{\n" MARK "}" };
+    tiny_folder f = tiny_new();
+
+    (void)state;
+    tiny_picture(&f, "0.png", TINY_W, TINY_H, 0);
+    mark(&f, "transforms.json", transforms);
+    assert_string_equal(summary(&f, &tiny_options), "0 f1");
+    for (size_t i = 0; i < sizeof broken / sizeof broken[0]; i++) {
+        tiny_text(&f, "transforms.json", broken[i]);
+        assert_non_null(strstr(summary(&f, &tiny_options), "not valid JSON"));
+    }
+    must(remove(tiny_path(&f, "transforms.json")) == 0, "transforms.json");
+    tiny_picture(&f, "a/images/0.png", TINY_W, TINY_H, 0);
+    mark(&f, "cams.json",
+         "{\"cameras\": [{\"name\": \"a\", \"w\": 16, \"h\": 12, "
+         "\"K\": [[9,0,8],[0,9,6],[0,0,1]], \"w2c\": " TINY_POSE "}]}");
+    assert_string_equal(summary(&f, &tiny_options), "0 f1");
+    tiny_free(&f);
+}
+
+static void test_marked_colmap(void **state)
+{
+    tiny_folder f = tiny_new();
+    ted4_dataset d;
+
+    (void)state;
+    tiny_picture(&f, "images/0.png", TINY_W, TINY_H, 0);
+    mark(&f, "sparse/0/cameras.txt", "# Cameras\n1 PINHOLE 16 12 9 9 8 6\n");
+    mark(&f, "sparse/0/images.txt", "1 1 0 0 0 0 0 0 1 0.png\n\n");
+    mark(&f, "sparse/0/points3D.txt", "1 2 3 4 5 6 7\n");
+    assert_string_equal(tiny_load(&d, &f, &tiny_options), "");
+    assert_int_equal(d.n_pictures, 1);
+    assert_int_equal(d.n_points, 1);
+    assert_true(d.points[0] == 2 && d.points[2] == 4);
+    ted4_dataset_free(&d);
+    mark(&f, "sparse/0/cameras.txt", "x\n");
+    assert_non_null(strstr(summary(&f, &tiny_options), "cameras.txt:1: expected CAMERA_ID"));
+    tiny_free(&f);
+}
+
 /* ---- pictures that change ---- */
 
 /* Loads without a cache, so that every access to a picture reads its file. */
@@ -452,6 +509,7 @@ int main(void)
         cmocka_unit_test(test_max_frames),     cmocka_unit_test(test_changed),
         cmocka_unit_test(test_verify),         cmocka_unit_test(test_digest),
         cmocka_unit_test(test_digest_of_lens), cmocka_unit_test(test_nothing_shown),
+        cmocka_unit_test(test_marked_json),    cmocka_unit_test(test_marked_colmap),
     };
 
     return cmocka_run_group_tests_name("scene input", tests, NULL, NULL);

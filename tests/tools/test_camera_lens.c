@@ -176,6 +176,38 @@ static void test_mirror(void **state)
     assert_string_equal(why, "frame 0 has a transform_matrix that is a mirror image");
 }
 
+/* A byte order mark before the text is skipped; a piece of one is not text. */
+static void test_mark(void **state)
+{
+    static const struct {
+        const char *text;
+        int result;
+    } cases[] = {
+        { "\xef\xbb\xbf{\"fl_x\": 80, \"w\": 8, \"h\": 8, \"frames\": [{\"transform_matrix\": "
+          "[[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]}]}",
+          0 },
+        { "\xef\xbb\xbf", -1 },
+        { "\xef\xbb", -1 },
+        { "", -1 },
+    };
+
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        char path[TEMPORARY_SIZE + 16];
+        FILE *f;
+
+        snprintf(path, sizeof path, "%s/t.json", folder);
+        f = fopen(path, "w");
+        assert_non_null(f);
+        fputs(cases[i].text, f);
+        assert_int_equal(fclose(f), 0);
+        assert_int_equal(ted4_camera_list_load(&list, path, why, sizeof why), cases[i].result);
+        if (cases[i].result != 0)
+            assert_non_null(strstr(why, "line 1: "));
+        ted4_camera_list_free(&list);
+    }
+}
+
 static int set_up(void **state)
 {
     (void)state;
@@ -196,7 +228,8 @@ static int tear_down(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = { cmocka_unit_test(test_same), cmocka_unit_test(test_refused),
-                                        cmocka_unit_test(test_mirror) };
+                                        cmocka_unit_test(test_mirror),
+                                        cmocka_unit_test(test_mark) };
 
     return cmocka_run_group_tests(tests, set_up, tear_down);
 }
