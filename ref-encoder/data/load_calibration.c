@@ -136,18 +136,20 @@ static void name_camera(const calibration *c, size_t i, char where[WHERE])
     snprintf(where, WHERE, "%.600s: cameras[%zu]", c->path, i);
 }
 
-/* Refuses clips that have fewer pictures than stated, which may have been truncated. */
+/* Refuses clips that end before the stated frames, as they may have been truncated, and those that
+ * have none of them. */
 static int check_counts(const calibration *c)
 {
     char where[WHERE];
 
     for (const ted4_clip *clip = c->clips.list; clip < c->clips.list + c->clips.n; clip++) {
+        const size_t frames = clip->pictures.n > 0 ? clip->frames : 0;
         name_camera(c, clip->entry, where);
-        if (clip->pictures.n < c->stated)
+        if (frames < c->stated)
             return ted4_say(c->m,
                             "%s: %zu frames, expected %zu by the file's frames "
                             "(--max-frames reads the first ones)",
-                            where, clip->pictures.n, c->stated);
+                            where, frames, c->stated);
     }
     return 0;
 }

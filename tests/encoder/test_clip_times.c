@@ -235,8 +235,34 @@ static void test_most(void **state)
     cameras(&f, "", NULL, 3);
     o.max_frames = 2;
     check(&f, &o, "a0:0 a1:1 b0:0", 2, LACK "3 of 6; the first: b has none of number 1");
-    cameras(&f, "\"frames\": 3,", NULL, 2);
-    refuse(&f, "cams.json: cameras[1]: 2 frames, expected 3 by the file's frames", "");
+    tiny_free(&f);
+}
+
+/* The frames that cams.json states are counted by numbers, so that a picture may be missing; but a
+ * clip that ends early, or that begins later, is refused. */
+static void test_stated(void **state)
+{
+    tiny_folder f = tiny_new();
+
+    (void)state;
+    clip(&f, "images/a", "0 1 2 3"), clip(&f, "images/b", "0 2 3"), clip(&f, "images/c", "2 3");
+    cameras(&f, "\"frames\": 4,", NULL, 3);
+    check(&f, &tiny_options, "a0:0 a1:1 a2:2 a3:3 b0:0 b2:2 b3:3 c2:2 c3:3", 4,
+          LACK "3 of 12; the first: b has none of number 1");
+    cameras(&f, "\"frames\": 3,", NULL, 3);
+    check(&f, &tiny_options, "a0:0 a1:1 a2:2 b0:0 b2:2 c2:2", 3,
+          LACK "3 of 9; the first: b has none of number 1");
+    must(remove(tiny_path(&f, "images/b/3.png")) == 0, "3.png");
+    check(&f, &tiny_options, "a0:0 a1:1 a2:2 b0:0 b2:2 c2:2", 3,
+          LACK "3 of 9; the first: b has none of number 1");
+    cameras(&f, "\"frames\": 4,", NULL, 3);
+    refuse(&f, "cams.json: cameras[1]: 3 frames, expected 4 by the file's frames", "");
+    cameras(&f, "\"frames\": 2,", NULL, 3);
+    refuse(&f, "cams.json: cameras[2]: 0 frames, expected 2 by the file's frames", "");
+    /* Names without numbers are counted. */
+    clip(&f, "images/d", "x y z");
+    cameras(&f, "\"frames\": 4,", NULL, 4);
+    refuse(&f, "cams.json: cameras[1]: 2 frames, expected 4 by the file's frames", "");
     tiny_free(&f);
 }
 
@@ -287,7 +313,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_numbers), cmocka_unit_test(test_strays),
         cmocka_unit_test(test_starts),  cmocka_unit_test(test_most),
-        cmocka_unit_test(test_video),
+        cmocka_unit_test(test_stated),  cmocka_unit_test(test_video),
     };
 
     return cmocka_run_group_tests_name("times of clips", tests, NULL, NULL);
