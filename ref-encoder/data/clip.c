@@ -123,9 +123,14 @@ int ted4_clip_list(ted4_name_list *pictures, const char *folder, int lengths)
     int result = 0;
 
     memset(pictures, 0, sizeof *pictures);
-    for (struct dirent *e = d == NULL ? NULL : readdir(d); e != NULL && result == 0; e = readdir(d))
-        if (is_picture(e->d_name))
-            result = append(pictures, ted4_path_join(folder, e->d_name));
+    for (struct dirent *e = d == NULL ? NULL : readdir(d); e != NULL && result == 0;
+         e = readdir(d)) {
+        char *path = is_picture(e->d_name) ? ted4_path_join(folder, e->d_name) : NULL;
+        if (path != NULL && ted4_is_special(path))
+            free(path);
+        else if (is_picture(e->d_name))
+            result = append(pictures, path);
+    }
     if (d != NULL)
         closedir(d);
     if (result != 0)

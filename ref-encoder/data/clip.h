@@ -20,8 +20,8 @@ void ted4_name_list_free(ted4_name_list *l);
  * no clip. Returns 0, or -1 if memory runs out. */
 int ted4_clip_names(ted4_name_list *l, const char *folder);
 
-/* Lists all pictures in a folder, sorted by name: with by_length shorter names come first, so that
- * 9999 precedes 10000. Returns 0, or -1 if memory runs out. */
+/* Lists all pictures in a folder, but no pipes and the like, sorted by name: with by_length shorter
+ * names come first, so that 9999 precedes 10000. Returns 0, or -1 if memory runs out. */
 int ted4_clip_list(ted4_name_list *pictures, const char *folder, int by_length);
 
 /* A clip of the scene. */

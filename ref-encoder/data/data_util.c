@@ -82,6 +82,13 @@ int ted4_is_folder(const char *path)
     return stat(path, &s) == 0 && S_ISDIR(s.st_mode);
 }
 
+int ted4_is_special(const char *path)
+{
+    struct stat s;
+
+    return stat(path, &s) == 0 && !S_ISREG(s.st_mode) && !S_ISDIR(s.st_mode);
+}
+
 int ted4_may_read(const char *folder, ted4_message *m)
 {
     struct stat s;

@@ -29,6 +29,8 @@ char *ted4_text_copy(const char *text); /* owned by the caller; NULL: no memory 
 int ted4_text_add(char ***list, size_t *n, const char *format, ...) TED4_PRINTF(3, 4);
 int ted4_is_file(const char *path);
 int ted4_is_folder(const char *path);
+/* Is it a pipe, a socket or a device? To open a pipe could take for ever. */
+int ted4_is_special(const char *path);
 /* May the folder be listed and searched? Returns 0 if so, or if there is no such folder, else -1
  * with *m filled. */
 int ted4_may_read(const char *folder, ted4_message *m);

@@ -60,8 +60,8 @@ static int read_lens(const calibration *c, const json_t *o, const char *where, t
         found = ted4_json_number(o, where, "h", &h, c->m);
     if (found <= 0)
         return missing(c, where, "w, h", found);
-    if (!(w >= 1 && h >= 1 && w <= 1e6 && h <= 1e6))
-        return ted4_say(c->m, "%s: w, h are %g, %g, expected numbers of pixels", where, w, h);
+    if (!(w >= 1 && h >= 1 && w <= 1e6 && h <= 1e6) || w != floor(w) || h != floor(h))
+        return ted4_say(c->m, "%s: w, h are %g, %g, expected whole numbers of pixels", where, w, h);
     found = ted4_json_numbers(o, where, "K", K, 9, 9, c->m);
     if (found <= 0)
         return missing(c, where, "K", found);

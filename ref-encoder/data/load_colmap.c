@@ -129,6 +129,21 @@ static int add_image(ted4_raw_scene *s, const ted4_colmap *c, const ted4_colmap_
     return shot->camera == NULL ? ted4_say_no_memory(m) : 0;
 }
 
+/* Says that names with and without numbers, ranks above 0 and rank 0, are mixed. */
+static int say_mixed(const ted4_raw_scene *s, ted4_message *m)
+{
+    size_t without = 0, with = 0;
+
+    while (s->shots[without].time > 0)
+        without++;
+    while (s->shots[with].time == 0)
+        with++;
+    return ted4_say(m,
+                    "%.400s has no number in its name, %.400s has one: their order in time is "
+                    "unknown",
+                    s->shots[without].path, s->shots[with].path);
+}
+
 /* Replaces each number by its rank, because numbers in names only order the frames. If no name has
  * a number, all pictures are frame 0; names with and without numbers cannot be mixed. */
 static int rank_numbers(ted4_raw_scene *s, ted4_message *m)
@@ -150,9 +165,7 @@ static int rank_numbers(ted4_raw_scene *s, ted4_message *m)
     }
     const int mixed = k > 1 && v[0] == -1;
     free(v);
-    return mixed ? ted4_say(m, "COLMAP images: some names hold a number, some none: their order in "
-                               "time is unknown")
-                 : 0;
+    return mixed ? say_mixed(s, m) : 0;
 }
 
 static int add_images(ted4_raw_scene *s, ted4_colmap *c, const char *images, ted4_message *m)

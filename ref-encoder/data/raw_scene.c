@@ -69,12 +69,15 @@ void ted4_raw_scene_missing(ted4_raw_scene *s, const char *where, const char *na
         snprintf(s->first_missing, sizeof s->first_missing, "%.500s: %.190s", where, name);
 }
 
-/* Does the path not exist? A file that exists but cannot be read is an error, not an absence. */
+/* Does the path not exist, or is it no file from which a picture can be read? A file that exists
+ * but cannot be read is an error, not an absence. */
 static int is_absent(const char *path)
 {
     struct stat st;
 
-    return stat(path, &st) != 0 && (errno == ENOENT || errno == ENOTDIR || errno == ENAMETOOLONG);
+    if (stat(path, &st) != 0)
+        return errno == ENOENT || errno == ENOTDIR || errno == ENAMETOOLONG;
+    return ted4_is_special(path);
 }
 
 int ted4_raw_scene_list(ted4_raw_scene *s, char *path, const char *where, ted4_shot **shot,

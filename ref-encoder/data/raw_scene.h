@@ -56,9 +56,9 @@ void ted4_raw_scene_free(ted4_raw_scene *s);
  * size without a focal length; pose and time are zero. Returns NULL with *m filled on failure. */
 ted4_shot *ted4_raw_scene_add(ted4_raw_scene *s, char *path, const char *where, ted4_message *m);
 
-/* Like ted4_raw_scene_add, but for an entry of a list that may name a picture that does not exist.
- * Such entries are counted and skipped. Returns 1, or 0 with *shot NULL if the entry was skipped,
- * or -1 with *m filled. */
+/* Like ted4_raw_scene_add, but for an entry of a list that may name a picture that does not exist,
+ * or a pipe and the like. Such entries are counted and skipped. Returns 1, or 0 with *shot NULL if
+ * the entry was skipped, or -1 with *m filled. */
 int ted4_raw_scene_list(ted4_raw_scene *s, char *path, const char *where, ted4_shot **shot,
                         ted4_message *m);
 

@@ -159,8 +159,9 @@ static void test_colmap_text(void **state)
         { camera, "\n1 nan 0 0 0 0 0 0 1 p1.png\n", "", "images.txt:2", "not finite" },
         { camera, "1 1 0 0 0 0 inf 0 1 p1.png\n", "", "images.txt:1", "not finite" },
         { camera, "1 1 0 0 0 0 0 0 5 p1.png\n", "", "p1.png", "camera 5 is not in" },
-        { camera, "1 1 0 0 0 0 0 0 1 p1.png\n\n1 1 0 0 0 0 0 0 1 p.png\n\n", "", "COLMAP images",
-          "order in time" },
+        { camera, "1 1 0 0 0 0 0 0 1 p1.png\n\n1 1 0 0 0 0 0 0 1 p.png\n\n", "",
+          "/images/p.png has no number in its name, ",
+          "/images/p1.png has one: their order in time is unknown" },
         { camera, "1 1 0 0 0 0 0 0 1 p1.png\n2 1 0 0 0 0 0 0 1 p1.png\n", "", "images.txt:2: ",
           "expected the observations of the image on the line before: X Y POINT3D_ID for each, or "
           "an empty line" },

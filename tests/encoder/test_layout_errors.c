@@ -223,6 +223,10 @@ static const struct {
       "both start and frame" },
     { "", "\"name\": \"two\", \"frame\": 1.5," SIZE K W2C, "cameras[1].frame", "1.5" },
     { "", "\"name\": \"two\", \"frame\": 1e9," SIZE K W2C, "cameras[1]", "1e+09 frames" },
+    { "", "\"name\": \"two\", \"w\": 16.7, \"h\": 12," K W2C,
+      "cams.json: cameras[1]: w, h are 16.7, 12", "expected whole numbers of pixels" },
+    { "", "\"name\": \"two\", \"w\": 16, \"h\": 12.5," K W2C,
+      "cams.json: cameras[1]: w, h are 16, 12.5", "expected whole numbers of pixels" },
     { "", "\"name\": \"two\", \"w\": 20, \"h\": 12," K W2C, "two/images/0.png",
       "its camera says 20x12" },
 };

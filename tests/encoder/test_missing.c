@@ -179,6 +179,48 @@ static void test_unlisted(void **state)
     tiny_free(&f);
 }
 
+/* A pipe in place of a picture, from which nothing can be read, counts as missing. */
+static void test_pipe(void **state)
+{
+    tiny_folder f = tiny_new();
+    ted4_dataset_options o = tiny_options;
+    ted4_dataset d;
+
+    (void)state;
+    alarm(20); /* where the pipe is opened, the program would wait for ever */
+    tiny_text(&f, "sparse/0/cameras.txt", "1 PINHOLE 16 12 9 9 8 6\n");
+    tiny_text(&f, "sparse/0/images.txt", "1 1 0 0 0 0 0 0 1 0.png\n\n2 1 0 0 0 0 0 0 1 1.png\n\n");
+    tiny_picture(&f, "images/0.png", TINY_W, TINY_H, 0);
+    must(mkfifo(tiny_path(&f, "images/1.png"), 0666) == 0, "1.png");
+    assert_int_equal(
+        warned(&f, "1 of 2 entries has no picture: COLMAP image \"1.png\": ", "images/1.png"), 1);
+    tiny_free(&f);
+    f = tiny_new();
+    tiny_text(&f, "cams.json",
+              "{\"cameras\": [{\"name\": \"a\", \"w\": 16, \"h\": 12, "
+              "\"K\": [[9,0,8],[0,9,6],[0,0,1]], \"w2c\": " TINY_POSE "}]}");
+    tiny_picture(&f, "images/a/0.png", TINY_W, TINY_H, 0);
+    must(mkfifo(tiny_path(&f, "images/a/1.png"), 0666) == 0, "1.png");
+    tiny_picture(&f, "images/a/2.png", TINY_W, TINY_H, 2);
+    tiny_picture(&f, "images/a/3.png", TINY_W, TINY_H, 3);
+    assert_int_equal(warned(&f, "clips lack pictures by the numbers in their names: 1 of 4; ",
+                            "a has none of number 1"),
+                     3);
+    o.max_frames = 3;
+    assert_string_equal(tiny_load(&d, &f, &o), "");
+    assert_int_equal(d.n_pictures, 2);
+    ted4_dataset_free(&d);
+    /* What exists but is no picture is still an error. */
+    gone(&f, "images/a/1.png");
+    must(mkdir(tiny_path(&f, "images/a/1.png"), 0777) == 0, "1.png");
+    refuse(&f, "images/a/1.png: ", "a folder, expected a picture");
+    must(rmdir(tiny_path(&f, "images/a/1.png")) == 0, "1.png");
+    must(symlink("nowhere.png", tiny_path(&f, "images/a/1.png")) == 0, "1.png");
+    refuse(&f, "images/a/1.png: ", "No such file");
+    alarm(0);
+    tiny_free(&f);
+}
+
 static void test_hypernerf(void **state)
 {
     static const char camera[] = "{\"orientation\": [[1,0,0],[0,1,0],[0,0,1]], \"position\": "
@@ -240,6 +282,7 @@ int main(void)
         cmocka_unit_test(test_transforms),  cmocka_unit_test(test_lists),
         cmocka_unit_test(test_colmap),      cmocka_unit_test(test_hypernerf),
         cmocka_unit_test(test_calibration), cmocka_unit_test(test_unlisted),
+        cmocka_unit_test(test_pipe),
     };
 
     return cmocka_run_group_tests_name("missing pictures", tests, NULL, NULL);
