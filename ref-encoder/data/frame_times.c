@@ -63,8 +63,38 @@ static int fits(const double *u, size_t n, double steps, double tolerance)
     return 1;
 }
 
-/* Returns the number of steps of the coarsest grid that holds all times. If the format does not
- * have that many, returns the most that it has: times nearer than half a step then become one
+/* Returns by how much the grid with the given number of steps moves the time that it moves most. A
+ * result above most may be too small. */
+static double farthest(const double *u, size_t n, double steps, double most)
+{
+    double far = 0;
+
+    for (size_t j = 0; j < n && far <= most; j++)
+        far = fmax(far, fabs(u[j] - floor(u[j] * steps + 0.5) / steps));
+    return far;
+}
+
+/* Returns the number of steps, finest at most, of the grid that moves times least and leaves them
+ * apart, as the finest one does. Times that were rounded to few digits have such a grid, the one
+ * from which they were rounded. */
+static double nearest_steps(const double *u, size_t n, double finest)
+{
+    double best = finest, least = farthest(u, n, finest, 1);
+
+    for (double steps = finest - 1; steps >= (double)(n - 1); steps--) {
+        const double far = farthest(u, n, steps, least);
+
+        if (far <= least && fits(u, n, steps, 0.5)) {
+            best = steps;
+            least = far;
+        }
+    }
+    return best;
+}
+
+/* Returns the number of steps of the coarsest grid that holds all times. If there is none, the step
+ * is no finer than the smallest gap, and all times move to the nearest position. If the format does
+ * not have that many, returns the most that it has: times nearer than half a step then become one
  * frame. */
 static uint32_t find_steps(const double *u, size_t n)
 {
@@ -82,11 +112,10 @@ static uint32_t find_steps(const double *u, size_t n)
     for (double steps = (double)(n - 1); steps <= most; steps++)
         if (fits(u, n, steps, ON_GRID))
             return (uint32_t)steps;
-    /* The times have no common step: the smallest gap becomes the step, and all times move to the
-     * nearest position. */
-    const double steps = ceil(1 / gap - ON_GRID);
-    return steps < TED4_MAX_FRAMES && fits(u, n, steps, 0.5) ? (uint32_t)steps
-                                                             : TED4_MAX_FRAMES - 1;
+    const double finest = ceil(1 / gap - ON_GRID);
+    return finest < TED4_MAX_FRAMES && fits(u, n, finest, 0.5)
+               ? (uint32_t)nearest_steps(u, n, finest)
+               : TED4_MAX_FRAMES - 1;
 }
 
 /* Index of the distinct time nearest to v. */
