@@ -7,6 +7,7 @@
 #include "data/raw_scene.h"
 
 #include <jansson.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -85,8 +86,9 @@ static int read_lens(const json_t *o, const char *path, ted4_lens *l, ted4_messa
         ted4_json_numbers(o, path, "tangential", tangential, 2, 2, m) < 0 ||
         ted4_json_numbers(o, path, "tangential_distortion", tangential, 2, 2, m) < 0)
         return -1;
-    if (!(size[0] >= 1 && size[1] >= 1 && size[0] <= 1e6 && size[1] <= 1e6))
-        return ted4_say(m, "%s.image_size: %g, %g, expected numbers of pixels", path, size[0],
+    if (!(size[0] >= 1 && size[1] >= 1 && size[0] <= 1e6 && size[1] <= 1e6) ||
+        size[0] != floor(size[0]) || size[1] != floor(size[1]))
+        return ted4_say(m, "%s.image_size: %g, %g, expected whole numbers of pixels", path, size[0],
                         size[1]);
     l->width = (int)size[0];
     l->height = (int)size[1];
