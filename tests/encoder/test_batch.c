@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "ball_group.h"
+#include "larger.h"
 #include "odd_threads.h"
 #include "tool/threads.h"
 #include "train/math/random.h"
@@ -269,7 +270,7 @@ static void check_gradients(ted4_trainer *t)
 
     assert_true(fabs(together - loss) <= 1e-6 * loss);
     for (size_t i = 0; i < MOST; i++)
-        most = fmax(most, fabs(want[i]));
+        most = larger(most, fabs(want[i]));
     assert_true(most > 0);
     for (size_t i = 0; i < MOST; i++)
         if (!(fabs(got[i] - want[i]) <= 1e-4 * fabs(want[i]) + 2e-6 * most))
@@ -321,12 +322,12 @@ static void test_other_anchors(void **state)
 /* ---- the optimiser ---- */
 
 /* Returns the largest change of n numbers. */
-static float largest_change(const float *from, const float *to, size_t n)
+static double largest_change(const float *from, const float *to, size_t n)
 {
-    float most = 0;
+    double most = 0;
 
     for (size_t i = 0; i < n; i++)
-        most = fmaxf(most, fabsf(to[i] - from[i]));
+        most = larger(most, fabsf(to[i] - from[i]));
     return most;
 }
 
@@ -334,7 +335,7 @@ static float largest_change(const float *from, const float *to, size_t n)
 static void test_rates(void **state)
 {
     const ted4_train_options o = options(1);
-    float value[2], weight[2];
+    double value[2], weight[2];
 
     (void)state;
     for (int k = 0; k < 2; k++) {
@@ -358,8 +359,8 @@ static void test_rates(void **state)
         ted4_trainer_finish(&t);
     }
     assert_true(value[0] > 0 && weight[0] > 0);
-    assert_true(fabsf(value[1] / value[0] - 2) < 1e-3f);
-    assert_true(fabsf(weight[1] / weight[0] - 2) < 1e-3f);
+    assert_true(fabs(value[1] / value[0] - 2) < 1e-3);
+    assert_true(fabs(weight[1] / weight[0] - 2) < 1e-3);
 }
 
 /* ---- identical bytes ---- */

@@ -6,6 +6,7 @@
 #include <math.h>
 
 #include "test.h"
+#include "larger.h"
 #include "tiny_scene.h"
 #include "train/densify/camera_colour_init.h"
 #include "train/math/random.h"
@@ -124,15 +125,15 @@ static void write_scene(const tiny_folder *f, int n_points, const double *gain, 
 
 /* Largest difference between a value of a map and the true one, if the scene's colours are gain
  * times those of the plane. */
-static float worst(const ted4_colour *c, const double *gain)
+static double worst(const ted4_colour *c, const double *gain)
 {
-    float most = 0;
+    double most = 0;
 
     for (int k = 0; k < CAMERAS; k++)
         for (int i = 0; i < N; i++) {
             const float one = i < 9 && i % 4 == 0, of = i < 9 ? (float)gain[i / 3] : 1.0f;
 
-            most = fmaxf(most, fabsf(c->value[k][i] - ((one + truth(k, i, 1)) / of - one)));
+            most = larger(most, fabsf(c->value[k][i] - ((one + truth(k, i, 1)) / of - one)));
         }
     return most;
 }
@@ -202,11 +203,11 @@ static void test_gauge(void **state)
     matched(600, gain, 0.15, 1, &t, &d, &f);
     assert_int_equal(t.colour.matched, 1);
     /* Measured: 0.0050. */
-    assert_true(worst(&t.colour, gain) < 0.01f);
+    assert_true(worst(&t.colour, gain) < 0.01);
     for (int k = 0; k < CAMERAS; k++)
         t.colour.value[k][4] += 0.3f;
     ted4_colour_centre(&t.colour);
-    assert_true(worst(&t.colour, gain) < 0.01f);
+    assert_true(worst(&t.colour, gain) < 0.01);
     ted4_colour_finish(&t.colour);
     ted4_dataset_free(&d);
     tiny_free(&f);
@@ -222,7 +223,7 @@ static void test_gauge_of_clusters(void **state)
     (void)state;
     matched(600, by_cameras, 0, 1, &t, &d, &f);
     assert_int_equal(t.colour.matched, 1);
-    assert_true(worst(&t.colour, none) < 0.02f);
+    assert_true(worst(&t.colour, none) < 0.02);
     ted4_colour_finish(&t.colour);
     ted4_dataset_free(&d);
     tiny_free(&f);
@@ -240,7 +241,7 @@ static void test_other_colours(void **state)
         tiny_folder f;
 
         matched(600, gain[i], 0, 1, &t, &d, &f);
-        assert_true(worst(&t.colour, none) < 0.005f);
+        assert_true(worst(&t.colour, none) < 0.005);
         for (int k = 0; k < N; k++)
             assert_true(t.colour.middle[k] == 0.0f);
         ted4_colour_finish(&t.colour);

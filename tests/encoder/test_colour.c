@@ -5,6 +5,7 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "test.h"
 #include "ball_scene.h"
+#include "larger.h"
 #include "odd_threads.h"
 #include "train/math/random.h"
 #include "train/state/picture.h"
@@ -126,7 +127,7 @@ static void check_map_gradient(const ted4_colour *c, const float *image, const f
 
     for (int k = 0; k < N; k++) {
         map[k] = (double)c->value[1][k];
-        scale = fmax(scale, fabs((double)gradient[k]));
+        scale = larger(scale, fabs((double)gradient[k]));
     }
     for (size_t k = 0; k < N; k++) {
         const double h = 1e-4, at = map[k];

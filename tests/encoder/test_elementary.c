@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "test.h"
+#include "larger.h"
 #include "math/elementary.h"
 #include "train/math/random.h"
 
@@ -30,7 +31,7 @@ static double worst_of(our_function f, long_function truth, double from, double 
 
         if (!(fabsl(y) >= DBL_MIN && fabsl(y) <= DBL_MAX))
             continue;
-        worst = fmax(worst, (double)fabsl(((long double)f(x) - y) / y));
+        worst = larger(worst, (double)fabsl(((long double)f(x) - y) / y));
     }
     return worst;
 }
@@ -74,7 +75,7 @@ static void test_error_of_pow(void **state)
 
         const double error = (double)fabsl(((long double)ted4_math_pow(x, y) - truth) / truth);
 
-        worst = fmax(worst, error / (2 + fabs(y * log2(x))));
+        worst = larger(worst, error / (2 + fabs(y * log2(x))));
     }
     assert_within("pow, by 2 + |y log2(x)|", worst, 3e-16);
 }

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "ball_trainer.h"
+#include "larger.h"
 #include "test.h"
 #include "tiny_scene.h"
 #include "tools/scene/ray_rig.h"
@@ -347,8 +348,8 @@ static void test_found(void **state)
         for (int c = 0; c < 3; c++) {
             const double want = truth(&o, atoi(at + 3), (int)p->frame);
 
-            worst = fmax(worst, fabs((double)gain[c] - want));
-            most = fmax(most, fabs(want));
+            worst = larger(worst, fabs((double)gain[c] - want));
+            most = larger(most, fabs(want));
         }
     }
     if (!(worst < 0.25 * most))

@@ -242,7 +242,7 @@ static void test_size_floor(void **state)
         for (int j = 0; i >= 0 && j < 6 * TED4_LANES; j++) {
             const float want = above[j] > 0 ? 0 : above[j];
 
-            if (fabsf(d[j] - want) > 1e-3f * fabsf(want))
+            if (!(fabsf(d[j] - want) <= 1e-3f * fabsf(want)))
                 fail_msg("size %g, gradient %d: %g, not %g", (double)low[i], j, (double)d[j],
                          (double)want);
             up += want < 0;

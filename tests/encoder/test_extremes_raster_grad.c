@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "test.h"
+#include "larger.h"
 #include "raster_ref.h"
 #include "raster_scene.h"
 #include "train/raster/raster_bwd.h"
@@ -148,7 +149,7 @@ static void check(int not )
             continue;
         for (size_t k = p.s.n * (size_t)group_first[group];
              k < p.s.n * (size_t)group_first[group + 1]; k++)
-            top = fmax(top, fabs((double)p.d[k]));
+            top = larger(top, fabs((double)p.d[k]));
         for (size_t i = 0; i < p.s.n; i++)
             for (int k = group_first[group]; k < group_first[group + 1]; k++)
                 compare(i, k, top);

@@ -40,7 +40,7 @@ static void check_anchor(const ted4_splats *s, int visible, int lane)
 
             if (!used)
                 assert_true(isfinite(got));
-            else if (fabs(got - want[k][c]) > TOLERANCE * (1.0 + fabs(want[k][c])))
+            else if (!(fabs(got - want[k][c]) <= TOLERANCE * (1.0 + fabs(want[k][c]))))
                 fail_msg("slot %d lane %d offset %d member %d: %g, not %g", visible, lane, k, c,
                          got, want[k][c]);
         }

@@ -3,6 +3,7 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "test.h"
 #include "cloud_case.h"
+#include "larger.h"
 #include "train/math/voxel_set.h"
 #include "train/model/init.h"
 #include "train/model/normalise.h"
@@ -175,13 +176,14 @@ static void test_lattice(void **state)
             size_t found = 0;
 
             for (size_t k = 0; k < CLOUD_POINTS; k++) {
-                float p[3], far = 0;
+                float p[3];
+                double far = 0;
 
                 ted4_normalise_point(&t.layout.head, cloud.point[k], p);
                 for (int j = 0; j < 3; j++)
-                    far = fmaxf(
+                    far = larger(
                         far, fabsf(p[j] - *ted4_anchor_value(&t.anchors, TED4_ROW_POSITION, i, j)));
-                found += far < 1e-6f && !seen[k]++;
+                found += far < 1e-6 && !seen[k]++;
             }
             assert_int_equal(found, 1);
             check_values(&t, i, -2.0f);

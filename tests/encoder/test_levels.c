@@ -8,6 +8,7 @@
 
 #include "test.h"
 #include "generate_case.h"
+#include "larger.h"
 #include "raster_scene.h"
 #include "rate_ref.h"
 #include "train/raster/raster_bwd.h"
@@ -326,10 +327,11 @@ static double about_same(const results *a, const results *b, double tolerance, c
         double largest = 0, off = 0;
 
         for (size_t i = k > 0 ? a->end[k - 1] : 0; i < a->end[k]; i++) {
-            largest = fmax(largest, fabs((double)a->value[i]));
-            off = fmax(off, fabs((double)a->value[i] - (double)b->value[i]));
+            largest = larger(largest, fabs((double)a->value[i]));
+            largest = larger(largest, fabs((double)b->value[i]));
+            off = larger(off, fabs((double)a->value[i] - (double)b->value[i]));
         }
-        worst = fmax(worst, largest > 1e-6 ? off / largest : 0);
+        worst = larger(worst, largest <= 1e-6 ? 0 : off / largest);
     }
     if (!(worst <= tolerance))
         fail_msg("%s: the base is off by %g of the largest value, of %g", name, worst, tolerance);

@@ -8,6 +8,7 @@
 #include "test.h"
 #include "ball_group.h"
 #include "cloud_case.h"
+#include "larger.h"
 #include "train/densify/short_lived.h"
 #include "train/step/stages.h"
 #include "train/step/trainer_init.h"
@@ -285,7 +286,7 @@ static double off_symbols(const ted4_trainer *t, double *most)
                     continue;
                 sum += off;
                 n++;
-                *most = fmax(*most, off);
+                *most = larger(*most, off);
             }
     assert_true(n > 1000);
     return sum / n;
@@ -299,7 +300,7 @@ static int steps_are_tabled(const ted4_trainer *t)
             const double q = (double)*ted4_anchor_value(&t->anchors, TED4_ROW_STEP, i, y);
             const double octaves = log2(q / (double)t->layout.head.step[y]);
 
-            if (t->layout.shape.dim[y] > 0 && fabs(32 * octaves - rint(32 * octaves)) > 1e-3)
+            if (t->layout.shape.dim[y] > 0 && !(fabs(32 * octaves - rint(32 * octaves)) <= 1e-3))
                 return 0;
         }
     return 1;

@@ -3,6 +3,7 @@
  * from below, steps near 0).
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "test.h"
+#include "larger.h"
 #include "tool/threads.h"
 #include "norm/prior.h"
 #include "odd_threads.h"
@@ -346,7 +347,7 @@ static void test_sums(void **state)
     for (int t = 0; t < TED4_TYPES; t++)
         assert_true(close_to(c.bits[t], bits[t], 1e-12, 0.0));
     for (size_t j = 0; j < n; j++)
-        scale = fmax(scale, fabs(d_net[j]));
+        scale = larger(scale, fabs(d_net[j]));
     assert_true(scale > 1.0);
     for (size_t j = 0; j < n; j++)
         assert_true(close_to((double)c.d_net[j], d_net[j], 1e-5, 1e-5 * scale));

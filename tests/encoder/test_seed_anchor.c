@@ -7,6 +7,7 @@
 
 #include "test.h"
 #include "ball_group.h"
+#include "larger.h"
 #include "train/densify/seed_anchor.h"
 #include "train/state/anchor_masks.h"
 
@@ -62,15 +63,16 @@ static void add(ted4_trainer *t, float edge, ted4_seeding *s, ted4_place *place)
 }
 
 /* Returns the largest distance, on any axis, of an added anchor from its place in its frame. */
-static float farthest(ted4_trainer *t, const ted4_seeding *s, const ted4_place *place)
+static double farthest(ted4_trainer *t, const ted4_seeding *s, const ted4_place *place)
 {
-    float shown[ADDED][3], most = 0;
+    float shown[ADDED][3];
+    double most = 0;
 
     for (uint32_t f = 0; f < FRAMES; f++) {
         show(t, s->n_parents, f, shown);
         for (size_t i = 0; i < ADDED; i++)
             for (int c = 0; place[i].frame == f && c < 3; c++)
-                most = fmaxf(most, fabsf(shown[i][c] - place[i].point[c]));
+                most = larger(most, fabsf(shown[i][c] - place[i].point[c]));
     }
     return most;
 }
@@ -94,9 +96,9 @@ static void test_shown_there(void **state)
     (void)state;
     begin(&t, &o, 0.2f);
     add(&t, 0.5f, &s, place);
-    assert_true(farthest(&t, &s, place) > 0.15f);
+    assert_true(farthest(&t, &s, place) > 0.15);
     assert_int_equal(ted4_seeding_settle(&t, &s), 0);
-    assert_true(farthest(&t, &s, place) < 1e-6f);
+    assert_true(farthest(&t, &s, place) < 1e-6);
     assert_int_equal(count_closed(&t, &s), 0);
     ted4_seeding_finish(&s);
     ted4_trainer_finish(&t);
@@ -114,7 +116,7 @@ static void test_edge(void **state)
     begin(&t, &o, 0.2f);
     add(&t, 1.0f, &s, place);
     assert_int_equal(ted4_seeding_settle(&t, &s), 0);
-    assert_true(farthest(&t, &s, place) < 1e-6f);
+    assert_true(farthest(&t, &s, place) < 1e-6);
     assert_in_range(count_closed(&t, &s), ADDED / 20, ADDED / 5);
     for (size_t i = s.n_parents; i < t.anchors.n; i++)
         for (int c = 0; c < 3; c++)

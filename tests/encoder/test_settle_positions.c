@@ -6,6 +6,7 @@
 #include <stdlib.h>
 
 #include "cloud_case.h"
+#include "larger.h"
 #include "norm/half.h"
 #include "norm/scene.h"
 #include "test.h"
@@ -128,12 +129,12 @@ static void test_crowded_cell(void **state)
     assert_int_equal(t.anchors.n, 27);
     check_cells(&t, 12);
     for (size_t i = 0; i < 27; i++) {
-        float far = 0;
+        double far = 0;
 
         for (int j = 0; j < 3; j++)
-            far = fmaxf(far, fabsf(*value(&t, TED4_ROW_POSITION, i, j) - (j == 0   ? 0.25f
-                                                                          : j == 1 ? 0.125f
-                                                                                   : -0.125f)));
+            far = larger(far, fabsf(*value(&t, TED4_ROW_POSITION, i, j) - (j == 0   ? 0.25f
+                                                                           : j == 1 ? 0.125f
+                                                                                    : -0.125f)));
         nearest += !(far > 0);
         assert_true(far <= cell);
     }

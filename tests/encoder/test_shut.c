@@ -5,6 +5,7 @@
 
 #include "test.h"
 #include "ball_group.h"
+#include "larger.h"
 #include "train/splat/generator.h"
 #include "train/state/visible_blocks.h"
 
@@ -176,7 +177,7 @@ static void test_left_out(void **state)
 static void test_between(void **state)
 {
     const ted4_train_options o = ball_options();
-    float largest = 0;
+    double largest = 0;
     ted4_trainer t;
 
     (void)state;
@@ -187,10 +188,10 @@ static void test_between(void **state)
     result all = run_lanes(&t, 1.0f, 1.0f), even = run_blocks(&t, 0), odd = run_blocks(&t, 1);
 
     for (size_t i = 0; i < all.n_deform; i++)
-        largest = fmaxf(largest, fabsf(all.deform[i]));
+        largest = larger(largest, fabsf(all.deform[i]));
     assert_true(largest > 0);
     for (size_t i = 0; i < all.n_deform; i++)
-        assert_true(fabsf(even.deform[i] + odd.deform[i] - all.deform[i]) < 1e-5f * largest);
+        assert_true(fabsf(even.deform[i] + odd.deform[i] - all.deform[i]) < 1e-5 * largest);
     forget(&all);
     forget(&even);
     forget(&odd);

@@ -6,6 +6,7 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "test.h"
 #include "generate_ref.h"
+#include "larger.h"
 #include "loss_ref.h"
 #include "pose_ref.h"
 #include "raster_ref.h"
@@ -34,8 +35,7 @@ enum {
  * as jump / STEP, and half of it in the difference. */
 #define STEP        1e-7
 #define JUMP_SHARE  (2 * TOLERANCE)
-/* Tolerance between float gradients and double differences, relative to the size of the terms of
- * the product. */
+/* Tolerance between float gradients and double differences, by the size of the product's terms. */
 #define TOLERANCE   1e-4
 
 /* All parameters are in one array: the networks, followed by blocks of channels in the order of
@@ -488,7 +488,7 @@ static void check(const char *name, const double *direction, double size)
 
     for (size_t i = 0; i < pr.n_theta; i++) {
         got += pr.gradient[i] * direction[i];
-        longest = fmax(longest, fabs(direction[i]));
+        longest = larger(longest, fabs(direction[i]));
     }
     const double step = STEP / longest, here = reference(pr.theta);
     const double up = moved(direction, step) - here, down = here - moved(direction, -step);

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "test.h"
+#include "larger.h"
 #include "train/model/weight_grid.h"
 #include "train/math/random.h"
 
@@ -20,15 +21,16 @@ static void test_rounds(void **state)
 {
     (void)state;
     for (int bits = 1; bits < TED4_WEIGHT_GRID_FULL(TED4_WEIGHT_GRID_HEADS); bits++) {
-        float x[N], was[N], most = 0;
+        float x[N], was[N];
+        double most = 0;
 
         draw(x, N, (uint64_t)bits, ldexpf(1.7f, bits - 12));
         memcpy(was, x, sizeof x);
         ted4_weight_grid_round(x, N, bits);
         for (int i = 0; i < N; i++)
-            most = fmaxf(most, fabsf(was[i]));
+            most = larger(most, fabsf(was[i]));
 
-        const float step = ldexpf(1.0f, (int)ceilf(log2f(most)) - bits);
+        const float step = ldexpf(1.0f, (int)ceil(log2(most)) - bits);
 
         for (int i = 0; i < N; i++) {
             const float steps = x[i] / step;

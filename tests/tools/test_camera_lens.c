@@ -113,8 +113,8 @@ static void test_same(void **state)
             fail_msg("case %zu: %s", i, why);
         const ted4_view *const v = &list.camera[0].view;
 
-        if (fabs((double)v->fx - want.fx) > 1e-4 || fabs((double)v->fy - want.fy) > 1e-4 ||
-            fabs((double)v->cx - want.cx) > 1e-4 || fabs((double)v->cy - want.cy) > 1e-4)
+        if (!(fabs((double)v->fx - want.fx) <= 1e-4 && fabs((double)v->fy - want.fy) <= 1e-4 &&
+              fabs((double)v->cx - want.cx) <= 1e-4 && fabs((double)v->cy - want.cy) <= 1e-4))
             fail_msg("case %zu: %g %g %g %g, ted4enc has %g %g %g %g", i, (double)v->fx,
                      (double)v->fy, (double)v->cx, (double)v->cy, want.fx, want.fy, want.cx,
                      want.cy);

@@ -8,6 +8,7 @@
 
 #include "test.h"
 #include "estimate_runs.h"
+#include "larger.h"
 #include "tool/estimate.h"
 
 /* Times in the schedule: the probe, multi-view seeding, and trials at these shares of a stage; and
@@ -48,8 +49,8 @@ static void look(replay *p, double seconds)
     if (p->clock < FROM * whole(p->run) || fabs(left - truth) < CLOSE * whole(p->run))
         return;
     p->looks++;
-    p->worst = fmax(p->worst, fabs(left / truth - 1.0));
-    if (fabs(left / truth - 1.0) > NEAR)
+    p->worst = larger(p->worst, fabs(left / truth - 1.0));
+    if (!(fabs(left / truth - 1.0) <= NEAR))
         fail_msg("%s: at step %.0f, %.1f s of %.1f: %.1f s left, said %.1f", p->run->name,
                  p->w.step, p->clock, whole(p->run), truth, left);
 }

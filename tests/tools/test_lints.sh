@@ -49,6 +49,15 @@ long() { printf "%0$1d" 0; }
 # lines N: prints N lines
 lines() { yes '    x++;' | head -n "$1"; }
 
+plant_checks() {
+    file tests/support/plant.h '    most[i % 3] = fma''xf(most[i % 3], x);' \
+        '    *worst = fma''x(' '        *worst, y);' '    high = fma''x(low, high);' \
+        '    // asse''rt_true(x);' '    /* fail_''msg("x"); */' '#if'' 0'
+    says 'plant.h: a maximum that skips NaN: most[i % 3]' 'a maximum that skips NaN: *worst' \
+        'plant.h: left out: 5:' 'plant.h: left out: 6:' 'plant.h: left out: 7:'
+    ! grep -q high "$out/said" || fail checks_spares "$(cat "$out/said")"
+}
+
 plant_circles() {
     for pair in a_b b_c c_a; do
         file "tools/scene/plant_${pair%_*}.c" "void plant_in_${pair%_*}(void)" '{' \

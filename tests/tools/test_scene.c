@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "test.h"
+#include "larger.h"
 #include "tools/scene/ray_set.h"
 #include "tools/scene/ray_texture.h"
 #include "temporary.h"
@@ -58,7 +59,7 @@ static void test_cameras(void **state)
         for (int k = 0; k < 12; k++) {
             const double a = azimuth_of(&train[k]);
             if (a < azimuth_of(&c))
-                below = fmax(below, a);
+                below = larger(below, a);
             else
                 above = fmin(above, a);
         }

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "test.h"
+#include "larger.h"
 #include "tools/scene/ray_rig.h"
 #include "tools/scene/ray_shot.h"
 
@@ -64,7 +65,7 @@ static void test_tints(void **state)
         shot(&plain, camera, 0, b);
         const double share = brightness(a) / brightness(b);
         least = fmin(least, share);
-        most = fmax(most, share);
+        most = larger(most, share);
         assert_true(changed(a, b, 4) > 0.3);
         ted4_ray_camera_of(&o, camera, &c);
         for (int i = 0; i < 9; i++)
