@@ -33,24 +33,47 @@ case ${TED4_BUILD:-} in
 *[[:space:]]*) ln -s "$TED4_BUILD" "$own/build" && export TED4_BUILD="$own/build" ;;
 esac
 
+# counts LOG: prints how many tests passed, failed and were skipped, how many of these without a
+# line before that says why, and how many groups of tests did not come to their end. cmocka prints
+# what failed or was skipped once more at the end.
+counts() {
+    awk '
+        { name = $0; sub(/^\[[^]]*\] /, "", name); sub(/[: ].*/, "", name) }
+        /^\[==========\].*Running [0-9]+ test\(s\)/ { open++ }
+        /^\[==========\].* test\(s\) run/ { open-- }
+        tolower($0) ~ /^skip/ { reason = 1 }
+        /^\[       OK \]/ { ok++; reason = 0 }
+        /^\[  FAILED  \] [^0-9]/ { if (!failed[name]++) bad++; reason = 0 }
+        /^\[  SKIPPED \] [^0-9]/ {
+            if (!skipped[name]++) { skip++; silent += !reason }
+            reason = 0
+        }
+        END { print ok + 0, bad + 0, skip + 0, silent + 0, open + 0 }' "$1"
+}
+
 passed=0 failed=0 skipped=0
 for t in "$@"; do
     printf '%s ... ' "$(basename "$t")"
     CMOCKA_MESSAGE_OUTPUT=STDOUT "$t" >"$t.log" 2>&1
     status=$?
-    ok=$(grep -c '^\[       OK \]' "$t.log")
-    skip=$(grep -c '^\[  SKIPPED \] [^0-9]' "$t.log")
-    bad=$(grep -c '^\[  FAILED  \] [^0-9]' "$t.log")
+    read -r ok bad skip silent open <<END
+$(counts "$t.log")
+END
     if [ $status -ne 0 ] && [ "$bad" -eq 0 ]; then bad=1; fi
-    if [ $status -ne 0 ]; then
+    if [ "$bad" -ne 0 ]; then
         echo "FAILED ($bad)"
         cat "$t.log"
+    elif [ "$open" -ne 0 ]; then
+        echo "FAILED: ended before its last test"
+        cat "$t.log"
+        bad=1
     elif [ "$ok" -eq 0 ] && [ "$skip" -eq 0 ]; then
         echo "FAILED: ran nothing"
         bad=1
     else
         if [ "$skip" -eq 0 ]; then echo "$ok passed"; else echo "$ok passed, $skip skipped"; fi
         grep -i '^skip' "$t.log"
+        [ "$silent" -eq 0 ] || echo "skipped: no reason given"
     fi
     passed=$((passed + ok)) failed=$((failed + bad)) skipped=$((skipped + skip))
 done

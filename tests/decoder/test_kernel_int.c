@@ -100,8 +100,10 @@ static void selected(void **state)
 /* The variant of a test, or NULL if this machine does not have it. */
 static void variant(void **state)
 {
-    if (*state == NULL)
+    if (*state == NULL) {
+        print_message("skipped: this machine does not have it\n");
         skip();
+    }
     compare(*state);
 }
 

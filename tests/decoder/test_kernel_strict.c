@@ -104,8 +104,10 @@ static void variant_is_plain(void **state)
 {
     const variant *v = *state;
 
-    if (v == NULL || v->level > ted4_level_of_machine())
+    if (v == NULL || v->level > ted4_level_of_machine()) {
+        print_message("skipped: this machine does not have it\n");
         skip();
+    }
     twin_is_plain(v->twin);
 }
 

@@ -35,8 +35,7 @@ static void test_real(void **state)
         ted4_dataset d;
         snprintf(f.path, sizeof f.path, "%s/%s", base == NULL ? "" : base, scenes[s].name);
         if (base == NULL || !ted4_is_folder(f.path)) {
-            print_message("no scene %s under TED4_DATA, real scenes are not tested\n",
-                          scenes[s].name);
+            print_message("skipped: no scene %s under TED4_DATA\n", scenes[s].name);
             skip();
         }
         assert_string_equal(tiny_load(&d, &f, &tiny_options), "");
@@ -72,8 +71,7 @@ static void test_real_videos(void **state)
 
     snprintf(f.path, sizeof f.path, "%s/treadmill", base == NULL ? "" : base);
     if (base == NULL || !ted4_is_folder(f.path) || system("ffmpeg -version >/dev/null 2>&1") != 0) {
-        print_message(
-            "no scene treadmill under TED4_DATA, or no ffmpeg: real videos are not tested\n");
+        print_message("skipped: no scene treadmill under TED4_DATA, or no ffmpeg\n");
         skip();
     }
     cache = tiny_new();

@@ -344,7 +344,7 @@ static void levels_agree(void **state)
 
     (void)state;
     if (most < TED4_LEVEL_V3) {
-        printf("    only one level on this machine: nothing to compare\n");
+        print_message("skipped: this machine has only one level\n");
         skip();
     }
     for (size_t kind = 0; kind < sizeof kinds / sizeof kinds[0]; kind++) {

@@ -3,7 +3,7 @@
 # when it ends.
 # SPDX-License-Identifier: BSD-2-Clause
 export LC_ALL=C # for awk's numbers, and [a-z]
-out=$(mktemp -d)
+out=$(mktemp -d) || exit 1
 trap 'rm -rf "$out"' EXIT
 bad=0
 

@@ -14,6 +14,17 @@ program good 0 '[       OK ] a' '[       OK ] b'
 program half 0 '[       OK ] a' 'skipped: no scene' '[  SKIPPED ] b'
 program wrong 1 '[       OK ] a' '[  FAILED  ] b: why'
 program broken 139
+# cmocka prints what failed or was skipped once more at the end.
+program cmocka 1 '[==========] Running 3 test(s).' '[       OK ] a' 'skipped: no scene' \
+    '[  SKIPPED ] b' '[  FAILED  ] c' '[==========] 3 test(s) run.' '[  PASSED  ] 1 test(s).' \
+    '[  SKIPPED ] 1 test(s), listed below:' '[  SKIPPED ] b' \
+    '[  FAILED  ] 1 test(s), listed below:' '[  FAILED  ] c'
+program silent 0 '[  SKIPPED ] a' 'skipped: no scene' '[  SKIPPED ] b' '[  SKIPPED ] b'
+program early 0 '[==========] Running 2 test(s).' '[       OK ] a'
+program whole 0 '[==========] Running 1 test(s).' '[       OK ] a' '[==========] 1 test(s) run.' \
+    '[==========] tests: Running 1 test(s).' '[       OK ] b' \
+    '[==========] tests: 1 test(s) run.'
+program polite 0 '[       OK ] a' '[  FAILED  ] b: why'
 program empty 0
 runs() { name=$1 status=$2 text=$3; shift 3; expect "$name" "$status" "$text" sh tests/run.sh \
     "$@"; }
@@ -22,9 +33,16 @@ if [ "$(head -n 1 "$out/said")" = 'good ... 2 passed' ]; then ok none_skipped;
 else fail none_skipped "$(cat "$out/said")"; fi
 runs skips 0 'half ... 1 passed, 1 skipped' "$out/half"
 runs says_why_skipped 0 'skipped: no scene' "$out/half"
+! grep -q 'no reason' "$out/said" || fail says_why_skipped "$(cat "$out/said")"
 runs fails 1 '3 passed, 1 failed, 0 skipped' "$out/good" "$out/wrong"
 runs shows_failures 1 '[  FAILED  ] b: why' "$out/wrong"
 runs breaks_off 1 'broken ... FAILED (1)' "$out/broken"
+runs says_silent_skip 0 'skipped: no reason given' "$out/good" "$out/silent"
+runs counts_once 1 '1 passed, 1 failed, 1 skipped' "$out/cmocka"
+runs counts_skips_once 0 '1 passed, 0 failed, 3 skipped' "$out/half" "$out/silent"
+runs ends_early 1 'early ... FAILED: ended before its last test' "$out/early"
+runs whole 0 '2 passed, 0 failed, 0 skipped' "$out/whole"
+runs fails_with_status_0 1 'polite ... FAILED (1)' "$out/polite"
 runs nothing 1 'empty ... FAILED: ran nothing' "$out/empty"
 
 # The environment of programs.
