@@ -52,7 +52,7 @@ for name in images scene contract; do
     contract) set -- "$bin/ted4dec" --ted4-run "$out/a.ted4" --tiers T5 --queries "$out/q.json" \
         --dump . ;;
     esac
-    expect "full_$name" 3 ": " sh -c 'cd "$0" && ulimit -f 2 && "$@"' "$out/at" "$@"
+    expect "full_$name" 3 'File too large' sh -c 'cd "$0" && ulimit -f 2 && "$@"' "$out/at" "$@"
     find "$out/at" -name '*.tmp' -o -name '*.part' >"$out/said"
     [ -s "$out/said" ] && fail "left_$name" "$(cat "$out/said")" || ok "left_$name"
     rm -rf "$out/at"; mkdir "$out/at"
@@ -170,6 +170,7 @@ mkdir "$out/ended"
 while [ -z "$(ls -A "$out/ended")" ] && kill -0 $! 2>/dev/null; do :; done
 kill $! 2>/dev/null
 wait $!
+equal ended_status $? 143
 equal ended_render "$(ls -A "$out/ended" | grep -v '^x\.png$')" ""
 
 # ---- a name that is too long ----
