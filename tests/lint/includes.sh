@@ -1,6 +1,7 @@
 #!/bin/sh
 # Which folder may include which. A folder may always include itself, its own files by their bare
-# names. Folders are named from ref-decoder or ref-encoder. System headers are not checked.
+# names. Folders are named from ref-decoder or ref-encoder. In angle brackets are only headers of
+# the system and of libraries, which are not checked.
 export LC_ALL=C
 rooms_1="train/math"
 rooms_2="$rooms_1 train/model"
@@ -49,7 +50,12 @@ bad=0
 for f in $(find ref-decoder ref-encoder -name '*.[ch]'); do
     folder=$(dirname "$f")
     may=$(echo "$allow" | awk -v d="$folder" '$1 == d { $1 = ""; print }')
-    for i in $(sed -n 's/^#include "\(.*\)"/\1/p' "$f"); do
+    for i in $(sed -n 's/^[[:space:]]*#[[:space:]]*include[[:space:]]*<\(.*\)>.*/\1/p' "$f"); do
+        for where in ref-decoder ref-encoder "$folder" .; do
+            [ ! -f "$where/$i" ] || { echo "$f: $i is in angle brackets"; bad=1; break; }
+        done
+    done
+    for i in $(sed -n 's/^[[:space:]]*#[[:space:]]*include[[:space:]]*"\(.*\)".*/\1/p' "$f"); do
         case $i in
         train/*/*) to=${i%/*} ;;
         train/* | $starts) to=$i ;;

@@ -10,7 +10,7 @@ folders=$(sed -n '/^DEC_SRC/,/)))/s/.*addprefix ref-decoder\/,\([^)]*\)).*/\1/p'
     tr ' ,' '\n\n' | sed 's/\/\*\.c$//')
 [ -n "$folders" ] || { echo "Makefile: no folders in DEC_SRC"; bad=1; }
 for f in $(for d in $folders; do ls ref-decoder/$d/*.[ch]; done); do
-    text=$(gcc -fpreprocessed -dD -E -P "$f" 2>/dev/null | sed 's/"[^"]*"//g')
+    text=$(gcc -fpreprocessed -dD -E -P "$f" 2>/dev/null | sed 's/"\([^"\\]\|\\.\)*"//g')
     case $f in
     ref-decoder/base/arena.c) ;;
     *) printf '%s\n' "$text" | grep \

@@ -123,10 +123,12 @@ plant_format() {
         skip format "there is no clang-format-14"
         return
     fi
-    for folder in ref-decoder/base ref-encoder/math conformance/tool fuzz tests/support bench tools
+    for folder in ref-decoder/base ref-encoder/math conformance/tool fuzz tests/support bench \
+        tools player/wasm doc/examples
     do file $folder/plant.c 'int  planted( void );'; done
     says ref-decoder/base/plant.c:1 ref-encoder/math/plant.c:1 conformance/tool/plant.c:1 \
-        fuzz/plant.c:1 tests/support/plant.c:1 bench/plant.c:1 tools/plant.c:1
+        fuzz/plant.c:1 tests/support/plant.c:1 bench/plant.c:1 tools/plant.c:1 \
+        player/wasm/plant.c:1 doc/examples/plant.c:1
 }
 
 plant_help() {
@@ -138,9 +140,14 @@ plant_help() {
 plant_includes() {
     file ref-decoder/norm/plant.c '#include "render/project.h"'
     file ref-encoder/train/math/plant_m.c '#include "train/step/step.h"'
-    file ref-decoder/base/plant_b.h '#include "planted.h"'
+    file ref-decoder/base/plant_b.h '#include "planted.h"' '#  include "planted/a.h" /* a */' \
+        '    #include "planted/b.h"' '#include <render/raster_plain.h>' \
+        '#include <arena.h>' '#include <png.h>'
     says 'ref-decoder/norm/plant.c: may not include render/project.h' \
-        'plant_m.c: may not include train/step/step.h' 'plant_b.h: may not include planted.h'
+        'plant_m.c: may not include train/step/step.h' 'plant_b.h: may not include planted.h' \
+        'may not include planted/a.h' 'may not include planted/b.h' \
+        'render/raster_plain.h is in angle brackets' 'arena.h is in angle brackets'
+    ! grep -q png.h "$out/said" || fail includes_spares "$(cat "$out/said")"
 }
 
 # As clang-format leaves a tag behind text that it has moved.
@@ -169,6 +176,7 @@ plant_memory() {
         '            uint64_t kept_n[2];' '    }' '    }' \
         '    return (struct known) { .x = 1 }.x;' '}'
     file ref-decoder/base/plant.h '    p = malloc(1);' '    use = realloc;'
+    file ref-decoder/norm/plant_s.c '    f("\"malloc(1)\"");' '    f("\"" "x", calloc(1, 2), "\"");'
     file ref-decoder/read/plant.c '    inflateInit(&z);' '    f = fopen(p, "r");'
     file ref-decoder/kernel/plant.c '    abort();' '    thrd_create(&t, f, p);'
     file ref-decoder/recon/plant.c '    printf("x");' '    free(p);'
@@ -178,6 +186,9 @@ plant_memory() {
         'read/plant.c: zlib has malloc' 'read/plant.c: prints, ends or starts a thread:' \
         'kernel/plant.c: prints, ends or starts a thread:     abort()' 'thrd_create(&t' \
         'recon/plant.c: prints, ends or starts a thread:' 'recon/plant.c: memory of its own:'
+    grep -q 'plant_s.c: memory of its own: .*calloc' "$out/said" ||
+        fail memory_strings "$(grep plant_s "$out/said")"
+    ! grep -q 'plant_s.c: .*malloc(1)' "$out/said" || fail memory_strings "text counts"
     spared=$(grep -cE 'keeps: .*(name|fixed|known|m\[\])' "$out/said")
     [ "$spared" -eq 0 ] || fail memory_spares "$(grep keeps: "$out/said")"
     edit Makefile 's/addprefix ref-decoder/addprefix gone/'
@@ -186,8 +197,25 @@ plant_memory() {
 
 plant_nofloat() {
     file ref-decoder/norm/plant.c 'double x;' 'int y = log2f(z);'
-    file ref-decoder/read/plant.h 'float x = 0.5f;' '#include <math.h>'
-    says 'norm/plant.c: ' 'double x' 'log2f(z)' 'read/plant.h: ' '0.5f' 'math.h'
+    set --
+    for n in 0.5f 1e-3f .25f 0x1p-3f 2. 1E4 3.e1 0X.8P+2; do
+        file ref-decoder/read/plant.h "float x = $n;"
+        set -- "$@" "x = $n;"
+    done
+    file ref-decoder/read/plant.h '#include <math.h>'
+    file ref-decoder/read/plant_i.h 'int x = 0x1e3 + 0x1eULL - 0xe-3;' 'int y = s.e1;' \
+        'f("\" 0.5 ");'
+    says 'norm/plant.c: ' 'double x' 'log2f(z)' 'read/plant.h: ' 'math.h' "$@"
+    ! grep -q plant_i "$out/said" || fail nofloat_spares "$(cat "$out/said")"
+    # The programs that the lint needs besides gcc.
+    mkdir "$out/few"
+    for program in sh sed grep; do ln -s "$(command -v $program)" "$out/few/$program"; done
+    path=$PATH
+    PATH=$out/few
+    if sh tests/lint/nofloat.sh >"$out/said"; then gone="it passes"; else gone=; fi
+    PATH=$path
+    [ -z "$gone" ] && grep -q 'there is no gcc' "$out/said" && ok nofloat_needs ||
+        fail nofloat_needs "$gone$(cat "$out/said")"
 }
 
 plant_outside() {
@@ -208,17 +236,25 @@ plant_outside() {
 
 plant_readme() {
     file README.md '[planted](doc/planted.md)' '[away](#planted)' "$(long 900)"
+    file bench/plant.md '[planted](absent.md)'
+    file player/README.md '[planted](../README.md#planted)'
     edit README.md -E 's/^    make deps (demo|test)/    make \1/; s/\.(jpe?g|png|svg)\)/.gif)/'
     says 'README.md: more than 6,000 bytes' "no 'make deps demo' in" "no 'make deps test' in" \
         'README.md: no picture' 'README.md: no chart' \
         'README.md: link to doc/planted.md, which does not exist' \
-        'README.md: link to #planted, which is no heading'
+        'README.md: link to #planted, which is no heading' \
+        'bench/plant.md: link to absent.md, which does not exist' \
+        'player/README.md: link to ../README.md#planted, which is no heading'
 }
 
 plant_sections() {
     file ref-encoder/data/image_file.c '/* spec 9''9.9 */'
+    file player/plant.js '// spec 9''6.1'
+    file python/plant.py '# annex'' B.95'
     file doc/switches.md 'See chapter 7''7, or annex'' C.88.'
-    says 'spec 9''9.9: cited, but' 'spec 7''7: cited, but' 'spec C.''88: cited, but'
+    says 'spec 9''9.9: cited, but' 'spec 7''7: cited, but' 'spec C.''88: cited, but' \
+        'spec 9''6.1: cited, but no such heading: player/plant.js' \
+        'spec B.''95: cited, but no such heading: python/plant.py'
 }
 
 plant_size() {
@@ -226,9 +262,12 @@ plant_size() {
     file tools/plant_s.sh 'f() {' "$(lines 61)" '}' "$(lines 340)"
     file tools/plant_p.py 'def f():' "$(lines 61)" 'x = 1'
     file fuzz/plant.c 'int f(void)' '{' "$(lines 61)" '}'
+    file player/wasm/plant_w.c "$(lines 601)"
+    file doc/examples/plant_e.c "$(lines 601)"
     says 'ref-decoder/base/plant.c: 601 lines' 'tools/plant_s.sh: 403 lines' \
         'tools/plant_s.sh:1: function of 62 lines' 'tools/plant_p.py:1: function of 61 lines' \
-        'fuzz/plant.c:2: function of 62 lines' 'file names used twice: plant.c'
+        'fuzz/plant.c:2: function of 62 lines' 'file names used twice: plant.c' \
+        'player/wasm/plant_w.c: 601 lines' 'doc/examples/plant_e.c: 601 lines'
 }
 
 plant_spec_json() {
