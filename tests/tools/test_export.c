@@ -234,6 +234,29 @@ static void test_splat(void **state)
     free(data);
 }
 
+/* Gaussians that weigh the same stay in the order of the scene; here each one of five weights, the
+ * heaviest of which are the last of every five. */
+static void test_splat_ties(void **state)
+{
+    size_t size;
+    set s;
+
+    (void)state;
+    make(&s, N, 0);
+    for (size_t i = 0; i < N; i++) {
+        s.column[3][i] = s.column[4][i] = s.column[5][i] = 0.5f;
+        s.column[10][i] = 0.125f * (float)(i % 5 + 1);
+    }
+    uint8_t *const data = written(&s.frame, "a.splat", &size);
+    const uint8_t *p = data;
+
+    assert_int_equal(size, N * 32);
+    for (size_t rest = 5; rest-- > 0;)
+        for (size_t i = rest; i < N; i += 5, p += 32)
+            assert_true(float_at(p) == s.column[0][i]);
+    free(data);
+}
+
 /* ---- glTF ---- */
 
 /* q: w x y z. */
@@ -548,10 +571,10 @@ static int folder_remove(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_ply),     cmocka_unit_test(test_raw),
-        cmocka_unit_test(test_splat),   cmocka_unit_test(test_glb),
-        cmocka_unit_test(test_empty),   cmocka_unit_test(test_no_debris),
-        cmocka_unit_test(test_signals),
+        cmocka_unit_test(test_ply),       cmocka_unit_test(test_raw),
+        cmocka_unit_test(test_splat),     cmocka_unit_test(test_splat_ties),
+        cmocka_unit_test(test_glb),       cmocka_unit_test(test_empty),
+        cmocka_unit_test(test_no_debris), cmocka_unit_test(test_signals),
     };
     return cmocka_run_group_tests(tests, folder_make, folder_remove);
 }
