@@ -8,6 +8,7 @@
 #include "data/data_util.h"
 #include "data/point_cloud.h"
 #include "data/raw_scene.h"
+#include "larger.h"
 #include "tiny_scene.h"
 
 static void near(double a, double b, double tolerance)
@@ -25,16 +26,16 @@ static void load(ted4_dataset *d, const tiny_folder *f, const ted4_dataset_optio
 static void expect_cube(const ted4_dataset *d, double x, double y, double z, double half)
 {
     const double centre[3] = { x, y, z };
-    float low[3] = { 99, 99, 99 }, high[3] = { -99, -99, -99 };
+    double below[3] = { -99, -99, -99 }, high[3] = { -99, -99, -99 }; /* below: -low */
 
     assert_int_equal(d->random_points, 1);
     assert_int_equal(d->n_points, TED4_RANDOM_POINTS);
     for (size_t i = 0; i < 3 * d->n_points; i++) {
-        low[i % 3] = fminf(low[i % 3], d->points[i]);
-        high[i % 3] = fmaxf(high[i % 3], d->points[i]);
+        below[i % 3] = larger(below[i % 3], -(double)d->points[i]);
+        high[i % 3] = larger(high[i % 3], (double)d->points[i]);
     }
     for (int k = 0; k < 3; k++) {
-        near(low[k], centre[k] - half, 0.002 * half);
+        near(-below[k], centre[k] - half, 0.002 * half);
         near(high[k], centre[k] + half, 0.002 * half);
     }
 }

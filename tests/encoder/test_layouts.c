@@ -7,6 +7,7 @@
 #include "test.h"
 #include "data/undistort.h"
 #include "tools/scene/ray_set.h"
+#include "larger.h"
 #include "tiny_scene.h"
 
 enum {
@@ -61,8 +62,8 @@ static size_t twin(const ted4_dataset *r, const ted4_picture *p)
         const ted4_camera *a = &r->pictures[i].camera;
         double worst = 0;
         for (int k = 0; k < 12; k++)
-            worst = fmax(worst, k < 9 ? fabs(a->R[k] - p->camera.R[k])
-                                      : fabs(a->t[k - 9] - p->camera.t[k - 9]));
+            worst = larger(worst, k < 9 ? fabs(a->R[k] - p->camera.R[k])
+                                        : fabs(a->t[k - 9] - p->camera.t[k - 9]));
         if (worst < 1e-6 && r->pictures[i].frame == p->frame)
             return i;
     }
