@@ -203,6 +203,7 @@ def main():
             except AssertionError as e:
                 print(f"{e}\n[  FAILED  ] {name}")
                 failed += 1
+    print(f"[==========] {len(tests)} test(s) run.")
     print(f"[  PASSED  ] {len(tests) - failed} test(s).")
     return failed > 0
 
