@@ -1,5 +1,5 @@
-/* tool_files.h - the programs run as users run them, in a folder with three random files: for
- * test_tools.c and test_dec_options.c. Looks for them in $TED4_BUILD (set by tests/run.sh).
+/* tool_files.h - the programs run as users run them, in a folder with three random files. Looks for
+ * them in $TED4_BUILD (set by tests/run.sh).
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_TOOL_FILES_H
 #define TED4_TOOL_FILES_H
@@ -45,6 +45,15 @@ static inline int run(const char *format, ...)
     const int status = pclose(f);
     assert_true(WIFEXITED(status));
     return WEXITSTATUS(status);
+}
+
+/* Returns the folder from which the test was started, the project's root. */
+static inline const char *root(void)
+{
+    static char path[1024];
+
+    assert_non_null(getcwd(path, sizeof path));
+    return path;
 }
 
 static inline void path_of(char path[PATH_SIZE], const char *name)

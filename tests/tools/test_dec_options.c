@@ -223,14 +223,13 @@ static void test_usage(void **state)
 /* A query without a result says nothing against the file (R-ERR-008), and has no offset in it. */
 static void test_no_result(void **state)
 {
-    char root[1024], arguments[1300];
+    char arguments[1300];
 
     (void)state;
     need_programs();
-    assert_non_null(getcwd(root, sizeof root));
     snprintf(arguments, sizeof arguments,
              "'%s/conformance/vectors/valid/view/VIW-far-camera.ted4' --hash --time 0 --json",
-             root);
+             root());
     expect_refusal(arguments, "VIW-far-camera.ted4: this time and camera have no result "
                               "[rec.non-finite] (specification 12.2)");
     json_t *const report = json_loads(out, 0, NULL);
@@ -469,13 +468,12 @@ static void test_help(void **state)
  * accepts files with warnings must not accept one that is refused. */
 static void test_gravest(void **state)
 {
-    char root[1024], warned[1200];
+    char warned[1200];
     size_t size;
 
     (void)state;
     need_programs();
-    assert_non_null(getcwd(root, sizeof root));
-    snprintf(warned, sizeof warned, "'%s/conformance/vectors/content/CNT-pop-0.002.ted4'", root);
+    snprintf(warned, sizeof warned, "'%s/conformance/vectors/content/CNT-pop-0.002.ted4'", root());
     uint8_t *const data = contents("v1.ted4", &size);
 
     write_contents("cut.ted4", data, size - 1);

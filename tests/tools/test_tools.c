@@ -24,18 +24,16 @@ enum { WIDTH = 96, HEIGHT = 64, VIEWS = 3 };
 static void test_contract_bound(void **state)
 {
     static const char query[] = "[{\"t\":[0,1],\"cam\":[0,0,0]}]";
-    char here[1024];
 
     (void)state;
     need_programs();
-    assert_non_null(getcwd(here, sizeof here));
     write_contents("query.json", (const uint8_t *)query, strlen(query));
     for (int tier = 1; tier <= 5; tier += 4) {
         assert_int_equal(
             run("ted4dec --ted4-run %s/conformance/vectors/valid/header/HDR-head_width-512.ted4 "
                 "--tiers T%d --queries query.json "
                 "--knob max_alloc_total=180000",
-                here, tier),
+                root(), tier),
             0);
         assert_non_null(strstr(out, tier == 1 ? "\"result\":\"valid\"" : "\"limit.memory\""));
     }
