@@ -94,9 +94,10 @@ static const ted4_argument OPTIONS[N_OPTIONS] = {
                     "N cameras around the scene, or to and fro where the cameras of FILE.ted4 "
                     "stand, while it plays once" },
     [OPT_PATH] = { 0, "path", "FILE.json",
-                   "a camera that moves along these ones, while the scene plays once, or from the "
-                   "first one's time to the last one's if all have one and these do not decrease; "
-                   "file: the path of FILE.ted4" },
+                   "a camera that moves along these ones while the scene plays: all of it or, if "
+                   "every "
+                   "camera has a time and none is earlier than the one before, from the first time "
+                   "to the last; file: the path of FILE.ted4" },
     [OPT_VIEWS] = { 0, "views", "N",
                     "pictures of --path. Default: as many as the scene has frames; of a scene of "
                     "one time, 30 from camera to camera" },
