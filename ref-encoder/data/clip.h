@@ -69,10 +69,9 @@ int ted4_clips_give(const ted4_clips *c, ted4_raw_scene *s, ted4_message *m);
  * counted. Returns 0, or -1 with *m filled. */
 int ted4_clips_number(ted4_clips *c, ted4_message *m);
 
-/* clip_times.c: warns of missing pictures, and of numbers that were not used, with the picture for
- * which they were not; and where together is
- * set, as all clips should end at the same time, of clips that end early. Returns 0, or -1 with *m
- * filled. */
+/* clip_times.c: warns of missing pictures and of numbers that were not used, and names the picture
+ * that is the reason; where together is set, as all clips should end at the same time, it warns of
+ * clips that end early, too. Returns 0, or -1 with *m filled. */
 int ted4_clips_say(const ted4_clips *c, int together, ted4_raw_scene *s, ted4_message *m);
 
 #endif
