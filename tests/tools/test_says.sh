@@ -93,11 +93,17 @@ if (: >"$out/$odd.ted4") 2>/dev/null; then odd_files; else
     skip odd_files "no file here can be called that"
 fi
 
-# A video whose frames take time: an ffmpeg that makes one picture in a second and a half.
+# A video whose frames take time: an ffmpeg that makes one picture in a second and a half. If
+# TYPESCRIPT names a file, it makes no second one before "1 frame" is there, within a minute.
 mkdir "$out/bin" "$out/clips"
 cat >"$out/bin/ffmpeg" <<'EOF'
 #!/bin/sh
-for i in 1 2 3; do sleep 1.5; cp "$PICTURE" 00000$i.png; done
+for i in 1 2 3; do
+    sleep 1.5; cp "$PICTURE" 00000$i.png
+    n=0
+    while [ $i -eq 1 ] && [ -n "${TYPESCRIPT-}" ] && [ $n -lt 600 ] &&
+        ! grep -qs '1 frame' "$TYPESCRIPT"; do sleep 0.1; n=$((n + 1)); done
+done
 EOF
 chmod +x "$out/bin/ffmpeg"
 PICTURE=$(find "$out/scene" -name '*.png' | sort | head -n 1)
@@ -122,8 +128,8 @@ equal checked "$(cat "$out/status")" 0
 check unpacking "$out/err" "ted4enc: unpacking a.mp4: "
 if script -qec true /dev/null >/dev/null 2>&1 </dev/null; then
     rm -rf "$out/cache/ted4"
-    PATH=$out/bin:$PATH script -qec "'$enc' '$out/clips' --check" "$out/typescript" >/dev/null \
-        2>&1 </dev/null
+    PATH=$out/bin:$PATH TYPESCRIPT=$out/typescript \
+        script -qefc "'$enc' '$out/clips' --check" "$out/typescript" >/dev/null 2>&1 </dev/null
     check terminal "$out/typescript" "ted4enc: loading $out/clips" "unpacking a.mp4: 1 frame"
 else
     skip terminal "there is no program script, or no terminal for it"
