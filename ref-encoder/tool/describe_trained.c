@@ -71,6 +71,22 @@ static int add_chunks(job *j)
     return add_chunk(j, "THMB", png, size);
 }
 
+int ted4_describe_possible(const ted4_request *r, const ted4_dataset *d, char *why, size_t why_size)
+{
+    char text[200];
+    size_t size;
+
+    if (!r->cameras)
+        return 0;
+
+    uint8_t *cams = ted4_describe_taken(d, &size, text, sizeof text);
+
+    if (cams == NULL)
+        snprintf(why, why_size, "--cameras: %s", text);
+    free(cams);
+    return cams != NULL ? 0 : -1;
+}
+
 int ted4_describe_trained(const ted4_request *r, const ted4_dataset *d, const ted4_parallel *p,
                           uint8_t **bytes, size_t *size, char *why, size_t why_size)
 {

@@ -7,6 +7,11 @@
 #include "data/dataset.h"
 #include "request.h"
 
+/* Says before training what ted4_describe_trained would refuse after it, whatever the file. Returns
+ * 0, or -1 with why filled. */
+int ted4_describe_possible(const ted4_request *r, const ted4_dataset *d, char *why,
+                           size_t why_size);
+
 /* Replaces *bytes (malloc) by the file with these chunks, or leaves it as it is if r asks for
  * nothing. Returns 0, or -1 with why filled and *bytes unchanged. */
 int ted4_describe_trained(const ted4_request *r, const ted4_dataset *d, const ted4_parallel *p,

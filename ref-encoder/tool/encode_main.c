@@ -13,6 +13,7 @@
 #include "check_report.h"
 #include "data/dataset.h"
 #include "data/scatter.h"
+#include "describe_trained.h"
 #include "file_out.h"
 #include "outputs.h"
 #include "tool/threads.h"
@@ -327,7 +328,8 @@ static int work(const encoder *e)
 
     const int unread = ted4_dataset_load(&d, r->scene, &wanted, &m) != 0;
 
-    if (unread || set_rate(&d, r, &m) != 0) {
+    if (unread || set_rate(&d, r, &m) != 0 ||
+        ted4_describe_possible(r, &d, m.text, sizeof m.text) != 0) {
         if (!unread)
             ted4_dataset_free(&d);
         if (r->check)

@@ -62,6 +62,22 @@ equal json_usage "$? $(cat "$out/json")" "3 "
 expect quiet_and_verbose 3 'ted4enc: -q and -v: only one of them' \
     "$enc" "$out/scene" --check -q -v
 
+# More cameras than a chunk can list are refused before the training. All of these take the same
+# picture.
+mkdir "$out/many"
+cp "$(find "$out/scene" -name '*.png' | sort | head -n 1)" "$out/many/a.png"
+cp "$out/scene/transforms_test.json" "$out/many"
+sed -i 's|"file_path": "[^"]*"|"file_path": "./a"|' "$out/many/transforms_test.json"
+awk 'BEGIN {
+    printf "{\"camera_angle_x\": 0.8, \"frames\": ["
+    for (i = 0; i < 65537; i++)
+        printf "%s{\"file_path\": \"./a\", \"time\": %d, \"transform_matrix\": " \
+            "[[1,0,0,%d],[0,1,0,0],[0,0,1,4],[0,0,0,1]]}", i ? "," : "", i % 2, i
+    print "]}"
+}' >"$out/many/transforms_train.json"
+expect many_cameras 3 'ted4enc: --cameras: 65537 cameras, more than the 65536 of a chunk' \
+    "$enc" "$out/many" -o "$out/x.ted4" $small --cameras -q
+
 # If something is wrong, only that is reported.
 mkdir "$out/broken"
 cp -R "$out/scene/." "$out/broken"
