@@ -46,12 +46,9 @@ class Lab:
         self.unread.pop(key, None)
         return self.notes.get(key, "")
 
-    def cause(self, cell):
-        """The note of a scene and variant, and those of rules that have one for all scenes; "" when
-        a broken rule has neither."""
-        own = self.note(cell.scene, cell.variant)
-        of_rules = [self.notes.get(f"* {rule}", "") for rule in RULES if cell.breaks(rule)]
-        return " ".join(filter(None, [own] + of_rules)) if own or all(of_rules) else ""
+    def by_rule(self, cell):
+        """Whether each rule that a cell breaks has a note of its own."""
+        return all(f"* {rule}" in self.notes for rule in RULES if cell.breaks(rule))
 
 
 def write(runs, charts, results, _):

@@ -112,23 +112,38 @@ def failure_words(cell):
             + (": " + "; ".join(said) if said else ""))
 
 
+def rule_items(lab):
+    """The notes on rules that some run breaks."""
+    all_cells = [cell for scene in lab.scenes for cell in lab.cells(scene)]
+    noted = [(letter, lab.notes[f"* {rule}"]) for rule, (letter, _) in RULES.items()
+             if f"* {rule}" in lab.notes and any(cell.breaks(rule) for cell in all_cells)]
+    if noted:
+        lab.page.prose("""Some failures have the same cause in all runs. They are explained here,
+            and the table below leaves out runs that fail in no other way:""")
+        lab.page.say()
+    for letter, note in noted:
+        lab.page.item(f"**{letter}**: {note}")
+
+
 def failure_section(lab):
     """The whole method's failures first, then the variants'. Counts those of the whole method."""
     page = lab.page
     page.heading("Failures and their causes")
     page.prose("""Causes and remedies are written by hand in
         [stability-notes.md](stability-notes.md).""")
+    rule_items(lab)
     page.table("scene", "variant", "what fails", "cause and remedy")
     for variant in lab.variants:
         for scene in lab.scenes:
             cell = lab.cell(scene, variant)
             if not cell.marks():
                 continue
-            cause, is_whole = lab.cause(cell), variant == "whole"
+            own, by_rule, is_whole = lab.note(scene, variant), lab.by_rule(cell), variant == "whole"
             lab.failures += is_whole
-            lab.unexplained += is_whole and not cause
-            page.row(scene, variant, failure_words(cell),
-                     cause or ("**unexplained**" if is_whole else "-"))
+            lab.unexplained += is_whole and not (own or by_rule)
+            if own or not by_rule:
+                page.row(scene, variant, failure_words(cell),
+                         own or ("**unexplained**" if is_whole else "-"))
     for scene in lab.scenes:
         for i, variant in enumerate(lab.variants):
             if f"{scene} {variant}" in lab.unread or (i == 0 and f"{scene} *" in lab.unread):
