@@ -326,9 +326,7 @@ int ted4_training_go(ted4_training *t, int stages)
         }
     }
     ted4_run_log_tick(&t->log, tr);
-    if (keep_stage1(t) != 0 || save(t) != 0)
-        return -1;
-    return ted4_training_asked(t) ? stop(t, 0) : 0;
+    return keep_stage1(t) != 0 || save(t) != 0 ? -1 : 0;
 }
 
 int ted4_training_code(ted4_training *t, ted4_coded *c)
@@ -367,8 +365,6 @@ int ted4_training_code(ted4_training *t, ted4_coded *c)
                                     sizeof t->why) != 0;
     free(text);
     ted4_scene_free(scene);
-    if (!bad && ted4_training_asked(t))
-        bad = stop(t, 0);
     if (bad)
         ted4_coded_free(c);
     return bad ? -1 : 0;

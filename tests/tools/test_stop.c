@@ -1,6 +1,6 @@
-/* test_stop.c - ted4enc is asked to end by a signal: at any time it reports the step at which it
- * stopped and how to continue, and writes no file; the same command with --resume then writes the
- * same bytes as a run without disturbance. A second signal ends it at once.
+/* test_stop.c - ted4enc is asked to end by a signal: at any step but the last it reports the step
+ * at which it stopped and how to continue, and writes no file; the same command with --resume then
+ * writes the same bytes as a run without disturbance. A second signal ends it at once.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "test.h"
 #include "mishap.h"
@@ -220,6 +220,25 @@ static void test_no_checkpoint(void **state)
     expect_files("l");
 }
 
+/* After the last step, the file is still written. The log has this step before that. */
+static void test_after_the_last_step(void **state)
+{
+    enum { TIMES = 10 };
+    const moment m = { "\"step\":1900,", 0 };
+
+    (void)state;
+    for (int i = 0; i < TIMES; i++) {
+        begin_test();
+
+        const pid_t child = begin(NULL, NULL, NULL);
+
+        wait_for(&m);
+        kill(child, SIGTERM);
+        assert_int_equal(finish(child), 0);
+        expect_files("l x.ted4");
+    }
+}
+
 /* The same as signalled, with two signals at once. */
 static int signalled_twice(const moment *m)
 {
@@ -347,10 +366,10 @@ static void test_unheard(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_loading),          cmocka_unit_test(test_moments),
-        cmocka_unit_test(test_no_checkpoint),    cmocka_unit_test(test_again),
-        cmocka_unit_test(test_again_in_a_write), cmocka_unit_test(test_hung_up_twice),
-        cmocka_unit_test(test_unheard)
+        cmocka_unit_test(test_loading),       cmocka_unit_test(test_moments),
+        cmocka_unit_test(test_no_checkpoint), cmocka_unit_test(test_after_the_last_step),
+        cmocka_unit_test(test_again),         cmocka_unit_test(test_again_in_a_write),
+        cmocka_unit_test(test_hung_up_twice), cmocka_unit_test(test_unheard)
     };
 
     /* A shell that runs commands in the background, or nohup, makes them ignore signals. */
