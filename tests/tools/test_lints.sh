@@ -90,8 +90,9 @@ plant_columns() {
 plant_debian() {
     edit debian/changelog '1s/(.*)/(0.0.1)/'
     file debian/ted4.docs doc/planted.md
+    edit debian/control "s/^ This package contains the shared library\./ $(long 80)/"
     says 'debian/changelog: version 0.0.1, but ted4.h has' \
-        'doc/planted.md is named, but does not exist'
+        'doc/planted.md is named, but does not exist' 'debian/control:44: 81 columns'
 }
 
 plant_elsewhere() {
