@@ -96,9 +96,10 @@ export class Page {
     await this.#page.keyboard.up(key);
   }
 
-  async hold(key, milliseconds) {
+  // Holds the key until the expression is true.
+  async hold(key, expression) {
     await this.#page.keyboard.down(key);
-    await pause(milliseconds);
+    await this.until(expression);
     await this.#page.keyboard.up(key);
   }
 
