@@ -75,6 +75,21 @@ static const text_seed transforms[] = {
     { "transforms", "unknown_name.json", 0, "{\"fl_x\":2,\"train_filenames\":[\"a.png\"],\"test_filenames\":[\"z.png\"],\"frames\":[" PICTURE("./a.png", "") "," PICTURE("b.png", "") "]}" },
     { "transforms", "names_kind.json", 0, "{\"fl_x\":2,\"train_filenames\":7,\"frames\":[" PICTURE("a.png", "") "]}" },
     { "transforms", "twice_named.json", 0, "{\"fl_x\":2,\"train_filenames\":[\"a.png\",\"a.png\"],\"test_filenames\":[\"b.png\"],\"frames\":[" PICTURE("a.png", "") "," PICTURE("b.png", "") "]}" },
+    { "transforms", "singular.json", 0, "{\"fl_x\":2,\"frames\":[{\"file_path\":\"a.png\",\"transform_matrix\":[[0,0,0,0],[0,0,0,0],[0,0,0,4],[0,0,0,1]]}]}" },
+    { "transforms", "untimed.json", 1, "{\"camera_angle_x\":0.7,\"frames\":[" PICTURE("./a", "") "]}" },
+    { "transforms", "list.json", 0, "[]" },
+    { "transforms", "path_kind.json", 0, "{\"fl_x\":2,\"frames\":[{\"file_path\":7,\"transform_matrix\":" POSE "}]}" },
+    { "transforms", "large.json", 0, "{\"fl_x\":2,\"k1\":1e300,\"frames\":[" PICTURE("a.png", "") "]}" },
+    { "transforms", "size.json", 0, "{\"fl_x\":2,\"w\":3,\"h\":3,\"frames\":[" PICTURE("a.png", "") "]}" },
+    { "transforms", "focal.json", 0, "{\"fl_x\":-2,\"frames\":[" PICTURE("a.png", "") "]}" },
+    { "transforms", "all_held_out.json", 0, "{\"fl_x\":2,\"train_filenames\":[],\"test_filenames\":[\"a.png\",\"b.png\"],\"frames\":[" PICTURE("a.png", "") "," PICTURE("b.png", "") "]}" },
+    { "transforms", "one_missing.json", 0, "{\"fl_x\":2,\"frames\":[" PICTURE("a.png", "") "," PICTURE("c.png", "") "]}" },
+    { "transforms", "two_missing.json", 0, "{\"fl_x\":2,\"frames\":[" PICTURE("a.png", "") "," PICTURE("c.png", "") "," PICTURE("d.png", "") "]}" },
+    { "transforms", "rounded.json", 0, "{\"fl_x\":2,\"frames\":[" PICTURE("a.png", "\"time\":0,") "," PICTURE("b.png", "\"time\":0.333,") ","
+                                       PICTURE("b.png", "\"time\":0.667,") "," PICTURE("b.png", "\"time\":1,") "]}" },
+    { "transforms", "no_step.json", 0, "{\"fl_x\":2,\"frames\":[" PICTURE("a.png", "\"time\":0,") "," PICTURE("b.png", "\"time\":0.1234567,") ","
+                                       PICTURE("b.png", "\"time\":0.3333333,") "," PICTURE("b.png", "\"time\":1,") "]}" },
+    { "transforms", "names_item.json", 0, "{\"fl_x\":2,\"train_filenames\":[7],\"frames\":[" PICTURE("a.png", "") "]}" },
 };
 /* clang-format on */
 
