@@ -39,9 +39,9 @@ typedef struct {
 
 /* Opens the log, and restores the checkpoint (--resume) or the end of stage 1 (--stage1) if that
  * file exists. From now on a signal to end (stop.h) ends training after the current step, with a
- * last checkpoint, unless that was the last step: what is complete is coded and written. The
- * function under way then returns -1, but this is not an error: t->stopped is set, and t->why says
- * how to continue. Returns 0, or -1 with t->why filled. */
+ * last checkpoint. The function under way then returns -1, but this is not an error: t->stopped is
+ * set, and t->why says how to continue. After the last step a signal has no effect. Returns 0, or
+ * -1 with t->why filled. */
 int ted4_training_begin(ted4_training *t, const ted4_request *r, ted4_trainer *trainer,
                         ted4_teller *teller);
 /* Closes the log. bad: an earlier call has failed, and its t->why is kept. Returns 0, or not 0 with
