@@ -80,7 +80,7 @@ static const text_seed transforms[] = {
     { "transforms", "list.json", 0, "[]" },
     { "transforms", "path_kind.json", 0, "{\"fl_x\":2,\"frames\":[{\"file_path\":7,\"transform_matrix\":" POSE "}]}" },
     { "transforms", "large.json", 0, "{\"fl_x\":2,\"k1\":1e300,\"frames\":[" PICTURE("a.png", "") "]}" },
-    { "transforms", "size.json", 0, "{\"fl_x\":2,\"w\":3,\"h\":3,\"frames\":[" PICTURE("a.png", "") "]}" },
+    { "transforms", "size.json", 0, "{\"fl_x\":2,\"w\":5,\"h\":3,\"frames\":[" PICTURE("a.png", "") "]}" },
     { "transforms", "focal.json", 0, "{\"fl_x\":-2,\"frames\":[" PICTURE("a.png", "") "]}" },
     { "transforms", "all_held_out.json", 0, "{\"fl_x\":2,\"train_filenames\":[],\"test_filenames\":[\"a.png\",\"b.png\"],\"frames\":[" PICTURE("a.png", "") "," PICTURE("b.png", "") "]}" },
     { "transforms", "one_missing.json", 0, "{\"fl_x\":2,\"frames\":[" PICTURE("a.png", "") "," PICTURE("c.png", "") "]}" },
