@@ -220,7 +220,8 @@ static void test_no_checkpoint(void **state)
     expect_files("l");
 }
 
-/* After the last step, the file is still written. The log has this step before that. */
+/* After the last step, the file is still written. The log has this step before that, and before the
+ * last checkpoint. */
 static void test_after_the_last_step(void **state)
 {
     enum { TIMES = 10 };
@@ -228,14 +229,16 @@ static void test_after_the_last_step(void **state)
 
     (void)state;
     for (int i = 0; i < TIMES; i++) {
+        const int saves = i % 2;
+
         begin_test();
 
-        const pid_t child = begin(NULL, NULL, NULL);
+        const pid_t child = begin(saves ? "--checkpoint" : NULL, "out/c", NULL);
 
         wait_for(&m);
         kill(child, SIGTERM);
         assert_int_equal(finish(child), 0);
-        expect_files("l x.ted4");
+        expect_files(saves ? "c l x.ted4" : "l x.ted4");
     }
 }
 
