@@ -120,7 +120,7 @@ END
     sed 's/$/,600/; /^kitchen-inr_paper/s/600$/1800/' "$out/rows"
 } >"$out/sweep.csv"
 sed 's/\([^,]*\),.*/done \1/; s/^done \(walk-.*\)$/older \1/; s/^done kitchen-noautoreg-3$/older kitchen-noautoreg-3/; s/^done kitchen-linscale-1$/stale kitchen-linscale-1/' "$out/rows" >"$out/states"
-printf '%s\n' scene,cameras,pictures walk,2,9 kitchen,1,40 >"$out/held-out.csv"
+printf '%s\n' scene,cameras,pictures walk,2,9 kitchen,1,40 >"$out/splits.csv"
 mkdir "$out/pages"
 cat >"$out/pages/raster.md" <<END
 \$ make bench-raster

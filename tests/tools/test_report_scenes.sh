@@ -49,7 +49,7 @@ END
 } >"$out/sweep.csv"
 sed -n 's/\([^,]*\),k,.*/done \1/p' "$out/sweep.csv" >"$out/states"
 printf '%s\n' scene,cameras,pictures kitchen,1,40 upper,1,40 fair,2,32 walk,0,80 still,1,8 \
-    >"$out/held-out.csv"
+    >"$out/splits.csv"
 make_report() { TED4_RESULTS=$out TED4_PAGES=$out TED4_TABLE=$out/table.txt \
     python3 -m bench.pages report "$out/states"; }
 
@@ -79,7 +79,7 @@ if grep -q 'no activation (asked' "$out/report.md"; then fail met_not_listed "it
     else ok met_not_listed; fi
 
 # Unknown cameras meet nothing.
-sed -i /fair/d "$out/held-out.csv"
+sed -i /fair/d "$out/splits.csv"
 make_report || fail run "status $?"
 check unknown_cameras "$page" \
     'Rests on 2 scenes, unknown held-out cameras, 1 seed | undecided: rests on unknown held-out cameras |'

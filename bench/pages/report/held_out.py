@@ -1,5 +1,5 @@
-"""What verdicts rest on: scenes, held-out cameras and pictures, seeds. bench/held-out.csv tells the
-cameras.
+"""What verdicts rest on: scenes, held-out cameras and pictures, seeds. bench/splits.csv has the
+first two.
 SPDX-License-Identifier: BSD-2-Clause"""
 import csv
 
@@ -10,7 +10,7 @@ def held_out(report, scene):
     """(cameras, pictures) that training never saw, no camera where pictures of the training cameras
     at other times are held out; None where the file does not tell."""
     try:
-        with open(f"{report.results}/held-out.csv", encoding="utf-8") as file:
+        with open(f"{report.results}/splits.csv", encoding="utf-8") as file:
             for row in csv.DictReader(file):
                 if row["scene"] == scene:
                     return int(row["cameras"]), int(row["pictures"])
