@@ -36,18 +36,21 @@ put_row() {
 }
 
 # The file of the tag's row, if it has one, into the table, and away; it only goes if the table has
-# a row of the present sources and the file has none, or if the table has it already. 2: a run is at
-# work on it, which will leave a newer one.
+# a row of the present sources, or of the wanted options, and the file has none, or if the table has
+# it already. 2: a run is at work on it, which will leave a newer one.
 merge_row() {
     [ -f "$work/rows/$tag.row" ] || return 0
     exec 8>"$work/runs/$tag.lock"
     lock 8 || return
     [ -f "$work/rows/$tag.row" ] || return 0
     find_state
-    case $state:$had in
-    done:"$(key_in "$csv")"|equal:"$(key_in "$csv")") rm "$work/rows/$tag.row" ;;
-    *) into_table && echo "$tag: merged" ;;
+    there=$(key_in "$csv") new=$(key_in "$work/rows/$tag.row")
+    case $state:$had in done:"$there"|equal:"$there") new= ;; esac
+    case ${there%-*}:${new%-*} in
+    "${key%-*}:${key%-*}") ;;
+    "${key%-*}:"*) new= ;;
     esac
+    if [ -z "$new" ]; then rm "$work/rows/$tag.row"; else into_table && echo "$tag: merged"; fi
 }
 
 # 1: some stay what they were. The sentence about files that no run claims: only if all were asked.

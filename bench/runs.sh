@@ -1,13 +1,15 @@
 # runs.sh - what bench/{sweep,stability,capacity,zoo,bd_rate,held_out}.sh share: the runs of a
 # table, one process each, and a row of a CSV for each result. Sourced, from the project's root. A
-# row's key tells its options and the sources that decide its bytes and numbers; comments and
-# spacing do not count. The row is stale when either differs from the present ones, unless
-# bench/equal.csv says that those sources write the same bytes. A row keeps the key of the sources
-# that made it. The script may be killed at any moment and called again, also several times at once:
-# programs are copied before use, each stage 1 that runs share and each own scene is made once,
-# trainings go on from their last checkpoint, and rows go into the table whole: each is first a file
-# of its own, which is removed once the table has it. Several machines may work on one folder if its
-# locks hold between them (flock). The script sets beforehand:
+# row's key tells its options and the sources that decide its bytes, and what else `judges` names;
+# comments and spacing do not count. The row is stale when either differs from the present ones,
+# unless bench/equal.csv says that those sources write the same bytes. A row keeps the key of the
+# sources that made it. Programs that only measure a file (ref-encoder/tool, ref-decoder/tool,
+# spans, rate_check) are in no key: whoever changes what they measure takes the rows out.
+# The script may be killed at any moment and called again, also several times at once: programs are
+# copied before use, each stage 1 that runs share and each own scene is made once, trainings go on
+# from their last checkpoint, and rows go into the table whole: each is first a file of its own,
+# which is removed once the table has it. Several machines may work on one folder if its locks hold
+# between them (flock). The script sets beforehand:
 #     program                   its name
 #     build data work results   folders
 #     table                     the table of runs
@@ -90,10 +92,11 @@ run() {
     return $status
 }
 
-# The programs as the sources make them, built and copied once for each state of the sources, so
-# that a later build changes no run under way.
+# The programs as the sources make them, built and copied once for each state of the sources, those
+# that are in no key as well, so that a later build changes no run under way.
 copy_programs() {
-    programs=$work/programs-$version$measured
+    programs=$work/programs-$version$measured-$(awk -f bench/sources.awk \
+        ref-encoder/tool/*.[ch] ref-decoder/*/*.[ch] bench/*.[ch] | key_hash)
     mkdir -p "$work"
     (
         flock 9 || exit 1

@@ -48,11 +48,12 @@ keep_pictures() {
     down=$(echo "$options" | sed -n 's/.*--downscale \([0-9]*\).*/\1/p')
     [ -z "$judge" ] || down=1
     sheet=
-    case +$keep+ in *+sheet+*) sheet="--sheet $out.sheet.png" ;; esac
+    case +$keep+ in *+sheet+*) sheet=$out.sheet.png ;; esac
     held=$(echo " $options" | grep -o -E -- ' --hold-out [^ ]+' | tr -d '\n')
     run "$programs/ted4eval" "$out.ted4" "${judge:-$folder}" $held --anyway \
-        --downscale "${down:-1}" --json $sheet -f -q -j "$threads" >"$out.eval.json" || return 1
-    [ -z "$sheet" ] || keep_picture "$out.sheet.png" sheets "$tag" || return 1
+        --downscale "${down:-1}" --json ${sheet:+--sheet "$sheet"} -f -q -j "$threads" \
+        >"$out.eval.json" || return 1
+    [ -z "$sheet" ] || keep_picture "$sheet" sheets "$tag" || return 1
     spans=
     set -- "$out.ted4"
     case +$keep+ in

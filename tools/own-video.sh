@@ -24,9 +24,11 @@ pasted() { # the name as a shell reads it
 try() { "$@" </dev/null >>"$out/log" 2>&1 || die "$1 $2 failed: the end of $out/log says why"; }
 
 [ $# -ge 2 ] || die "usage: own-video.sh FOLDER VIDEO, or own-video.sh FOLDER CLIP CLIP..."
-# No name may look like an option, a protocol of ffmpeg, or an assignment of awk.
+# No name may look like an option, a protocol of ffmpeg, or an assignment of awk, or end a line or a
+# column of the lists below.
 for v; do
     shift
+    case $v in *[[:cntrl:]]*) die "a name has a line break, a tab or the like" ;; esac
     case $v in /* | ./* | ../*) ;; *) v=./$v ;; esac
     set -- "$@" "$v"
 done
@@ -86,7 +88,7 @@ colmap mapper --database_path "$work/db" --image_path "$work/images" --output_pa
 largest=$(ls -S "$work/models"/*/images.bin 2>/dev/null | head -n 1)
 [ -n "$largest" ] || die \
     "COLMAP found no poses: did the camera move, or do the clips see enough of the same? (doc/own-video.md)"
-mv "${largest%/images.bin}" "$work/sparse/0"
+mv "${largest%/images.bin}" "$work/sparse/0" || die "$work/sparse/0: cannot be written"
 posed=$(od -An -tu4 -N4 "$work/sparse/0/images.bin" | tr -d ' ')
 echo "own-video.sh: $posed of $n pictures have poses"
 

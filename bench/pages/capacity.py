@@ -182,8 +182,11 @@ def things_bar(bars, costs):
 
 
 def first_things(runs):
-    """The bar of things_bar as it first was: of one seed alone."""
-    spent = [temporal(runs.first(scene, "auto")) for scene in THINGS]
+    """The bar of things_bar as it first was: of one seed alone. None without all of its rows."""
+    autos = [runs.first(scene, "auto") for scene in THINGS]
+    if not all(run.has() for run in autos):
+        return None
+    spent = [temporal(run) for run in autos]
     return First("the same, of seed 1 alone", ", ".join(f"{value:.0f}" for value in spent),
                  spent[0] == 0 and all(a < b for a, b in zip(spent, spent[1:])))
 

@@ -109,6 +109,8 @@ class Runs:
                 lines = file.read().splitlines()
         except FileNotFoundError:
             return
+        if not lines:
+            sys.exit(f"{csv}: no line with the names of columns")
         columns = lines[0].split(",")
         for number, line in enumerate(lines[1:], 2):
             cells = line.split(",")

@@ -202,7 +202,8 @@ def seed_bars(lab):
     again = [(lab.runs.first(scene, "again"), lab.runs.first(scene, "whole"))
              for scene in lab.scenes if lab.runs.of(scene, "again")]
     compared = [(a, b) for a, b in again
-                if a.has() and b.has() and not a.is_old() and not b.is_old()]
+                if all(run.has() and not run.is_old() and run.text("status") == "fine"
+                       for run in (a, b))]
     same = sum(a.text("hash") == b.text("hash") and a.text("bytes") == b.text("bytes")
                for a, b in compared)
     lab.bars.add(3, "the same seed trained twice", "the same bytes",

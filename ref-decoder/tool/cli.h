@@ -14,9 +14,10 @@
 
 enum { TED4_EXIT_FINE = 0, TED4_EXIT_REFUSED = 1, TED4_EXIT_WARNED = 2, TED4_EXIT_TOOL = 3 };
 
-/* Called by a program before it writes anything: ted4_arguments_next does so. From then on a file
- * that reaches the limit of file sizes (ulimit -f) is an error of output, as on a full disk, for
- * this process and its children; by itself, the system would end the process. */
+/* Called by a program before it opens or writes anything: ted4_arguments_next does so. From then on
+ * no file gets the number of a standard stream that is closed; and a file that reaches the limit of
+ * file sizes (ulimit -f) is an error of output, as on a full disk, for this process and its
+ * children; by itself, the system would end the process. */
 void ted4_cli_begin(void);
 /* Called where standard output takes no more, with the errno of that, which is gone by the end:
  * ted4_cli_end says so. */

@@ -8,6 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <png.h>
+
 #include "camera_view.h"
 #include "data/data_util.h"
 #include "render/png_file.h"
@@ -52,39 +54,50 @@ void ted4_describe_up(const ted4_dataset *d, float up[3])
             up[a] = a == largest ? copysignf(1.0f, up[a]) : 0.0f;
 }
 
-/* first[camera_id]: the first training picture of each camera, n_pictures if there is none.
- * moves[camera_id]: 1 if its pictures were taken from several places. */
-static void find_moving(const ted4_dataset *d, size_t *first, uint8_t *moves)
+/* The training pictures of a camera. */
+typedef struct {
+    size_t n, first;
+    int moves; /* 1: they were taken from several places */
+} taken;
+
+/* all: one per camera, zeros. */
+static void find_taken(const ted4_dataset *d, taken *all)
 {
-    for (size_t c = 0; c < d->n_cameras; c++)
-        first[c] = d->n_pictures;
     for (size_t i = 0; i < d->n_pictures; i++) {
         const ted4_picture *p = &d->pictures[i];
+        taken *const t = &all[p->camera_id];
 
         if (p->is_test)
             continue;
-        if (first[p->camera_id] == d->n_pictures)
-            first[p->camera_id] = i;
-        else if (!ted4_camera_same(&d->pictures[first[p->camera_id]].camera, &p->camera))
-            moves[p->camera_id] = 1;
+        if (t->n++ == 0)
+            t->first = i;
+        else if (!ted4_camera_same(&d->pictures[t->first].camera, &p->camera))
+            t->moves = 1;
     }
 }
 
+/* Whether the pictures of a camera are listed with their times: those of a moving one; and a single
+ * one, for in many layouts a moving camera is another one at each place. */
+static int has_times(const ted4_dataset *d, const taken *t)
+{
+    return t->moves || (t->n == 1 && d->n_frames > 1);
+}
+
 /* Writes the cameras behind the head of a payload; NULL: only counts them. */
-static size_t put_taken(const ted4_dataset *d, const size_t *first, const uint8_t *moves,
-                        uint8_t *payload)
+static size_t put_taken(const ted4_dataset *d, const taken *all, uint8_t *payload)
 {
     size_t n = 0;
 
     for (size_t i = 0; i < d->n_pictures; i++) {
         const ted4_picture *p = &d->pictures[i];
+        const taken *const t = &all[p->camera_id];
 
-        if (p->is_test || (!moves[p->camera_id] && first[p->camera_id] != i))
+        if (p->is_test || (!t->moves && t->first != i))
             continue;
         if (payload != NULL) {
             ted4_cams_camera c = { .view = ted4_view_of_camera(&p->camera) };
 
-            if (moves[p->camera_id])
+            if (has_times(d, t))
                 c.time = ted4_time_of_frame(p->frame, d->n_frames);
             ted4_cams_put(payload + TED4_CAMS_HEAD + n * TED4_CAMS_CAMERA, &c);
         }
@@ -95,15 +108,15 @@ static size_t put_taken(const ted4_dataset *d, const size_t *first, const uint8_
 
 uint8_t *ted4_describe_taken(const ted4_dataset *d, size_t *size, char *why, size_t why_size)
 {
-    size_t *first = calloc((size_t)d->n_cameras + 1, sizeof *first);
-    uint8_t *moves = calloc((size_t)d->n_cameras + 1, 1), *payload = NULL;
+    taken *const all = calloc((size_t)d->n_cameras + 1, sizeof *all);
+    uint8_t *payload = NULL;
     float up[3];
 
     ted4_describe_up(d, up);
-    if (first != NULL && moves != NULL) {
-        find_moving(d, first, moves);
+    if (all != NULL) {
+        find_taken(d, all);
 
-        const size_t n = put_taken(d, first, moves, NULL);
+        const size_t n = put_taken(d, all, NULL);
 
         *size = TED4_CAMS_HEAD + n * TED4_CAMS_CAMERA;
         if (n > TED4_CAMS_MOST)
@@ -112,13 +125,12 @@ uint8_t *ted4_describe_taken(const ted4_dataset *d, size_t *size, char *why, siz
             no_memory(why, why_size);
         if (payload != NULL) {
             ted4_cams_put_head(payload, up, TED4_CAMS_TAKEN, n);
-            put_taken(d, first, moves, payload);
+            put_taken(d, all, payload);
         }
     } else {
         no_memory(why, why_size);
     }
-    free(first);
-    free(moves);
+    free(all);
     return payload;
 }
 
@@ -174,19 +186,40 @@ static int is_thumbnail(const uint8_t *png, size_t size)
            side[1] <= TED4_THUMBNAIL_LARGEST;
 }
 
+/* Can all of a thumbnail be decoded? */
+static int is_whole(const uint8_t *png, size_t size)
+{
+    png_image image = { .version = PNG_IMAGE_VERSION };
+    uint8_t *pixels;
+    int whole;
+
+    if (!png_image_begin_read_from_memory(&image, png, size))
+        return 0;
+    image.format = PNG_FORMAT_RGBA;
+    pixels = malloc(PNG_IMAGE_SIZE(image));
+    whole = pixels != NULL && png_image_finish_read(&image, NULL, pixels, 0, NULL) != 0;
+    png_image_free(&image);
+    free(pixels);
+    return whole;
+}
+
 uint8_t *ted4_describe_png(const char *path, size_t *size, char *why, size_t why_size)
 {
     uint8_t *png = ted4_read_file(path, size);
 
     if (png == NULL) {
         snprintf(why, why_size, "%s", strerror(errno));
-    } else if (!is_thumbnail(png, *size)) {
+        return NULL;
+    }
+    if (!is_thumbnail(png, *size))
         snprintf(why, why_size, "expected a PNG file of at most %d x %d pixels",
                  TED4_THUMBNAIL_LARGEST, TED4_THUMBNAIL_LARGEST);
-        free(png);
-        png = NULL;
-    }
-    return png;
+    else if (!is_whole(png, *size))
+        snprintf(why, why_size, "a PNG file that is cut short or damaged");
+    else
+        return png;
+    free(png);
+    return NULL;
 }
 
 /* The view of the first training picture, scaled to at most TED4_THUMBNAIL_MADE pixels, which are

@@ -23,13 +23,13 @@ enum { TED4_THUMBNAIL_LARGEST = 1024, TED4_THUMBNAIL_MADE = 256 };
 void ted4_describe_up(const ted4_dataset *d, float up[3]);
 
 /* CAMS with the cameras of all training pictures. A camera that does not move appears once, and
- * belongs to all times. */
+ * belongs to all times if it has taken more than one picture. */
 uint8_t *ted4_describe_taken(const ted4_dataset *d, size_t *size, char *why, size_t why_size);
 /* CAMS with the cameras of a list. n_frames: of the scene, for cameras that name a frame. */
 uint8_t *ted4_describe_listed(const ted4_camera_list *l, uint32_t n_frames, ted4_cams_kind kind,
                               const float up[3], size_t *size, char *why, size_t why_size);
 
-/* THMB from a PNG file, which must be small enough. */
+/* THMB from a PNG file, which must be whole and small enough. */
 uint8_t *ted4_describe_png(const char *path, size_t *size, char *why, size_t why_size);
 /* THMB: the decoded file as the first training camera sees it, in the middle of the scene's time.
  */

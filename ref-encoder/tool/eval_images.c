@@ -8,8 +8,9 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "file_out.h"
 #include "moving_pixels.h"
-#include "sheet.h"
+#include "render/png_file.h"
 #include "tool/output.h"
 #include "tool/picture_out.h"
 
@@ -94,5 +95,20 @@ int ted4_eval_images_write(const ted4_eval_images *to, const ted4_camera *c, con
         code = write_one(to, kinds[MOVING], c, made, m);
     }
     free(made);
+    return code;
+}
+
+int ted4_eval_sheet_write(const ted4_sheet *s, const char *path, int force, char *why,
+                          size_t why_size)
+{
+    size_t size;
+    uint8_t *const png = ted4_png_encode(s->width * TED4_SHEET_COLUMNS, s->height * s->rows, s->rgb,
+                                         &size, why, why_size);
+    int code;
+
+    if (png == NULL)
+        return -1;
+    code = ted4_file_keep(path, force, png, size, why, why_size);
+    free(png);
     return code;
 }

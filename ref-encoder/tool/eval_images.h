@@ -1,10 +1,11 @@
-/* eval_images.h - the folders of pictures that ted4eval --images writes. Depends on data/dataset.h,
- * tool/picture_out.h, moving_pixels.h.
+/* eval_images.h - pictures that ted4eval writes: the folders of --images, and the sheet. Depends on
+ * data/dataset.h, tool/picture_out.h, file_out.h, moving_pixels.h, sheet.h.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_EVAL_IMAGES_H
 #define TED4_EVAL_IMAGES_H
 
 #include "data/dataset.h"
+#include "sheet.h"
 
 typedef struct {
     const char *folder;
@@ -22,5 +23,9 @@ int ted4_eval_images_begin(const char *folder, size_t n, int moving, int overwri
  * [height][width][3] of the camera. Returns 0, or -1 with *m filled. */
 int ted4_eval_images_write(const ted4_eval_images *to, const ted4_camera *c, const uint8_t *truth,
                            const uint8_t *ours, const uint8_t *median, ted4_message *m);
+
+/* Writes a sheet as ted4_file_keep does, as a PNG. */
+int ted4_eval_sheet_write(const ted4_sheet *s, const char *path, int force, char *why,
+                          size_t why_size);
 
 #endif

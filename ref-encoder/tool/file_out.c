@@ -97,8 +97,7 @@ int ted4_file_keep(const char *path, int force, const void *data, size_t size, c
             break;
     }
     if (error == 0)
-        snprintf(why, why_size,
-                 "%s holds the result: %s has been made by another program meanwhile, and stays",
+        snprintf(why, why_size, "%s holds the result: %s has been made meanwhile, and stays",
                  beside, path);
     else
         snprintf(why, why_size, "%s: %s", path, strerror(error));

@@ -15,6 +15,7 @@
 #include "eval/metrics.h"
 #include "eval_images.h"
 #include "eval_result.h"
+#include "file_out.h"
 #include "fit_colours.h"
 #include "moving_pixels.h"
 #include "render/view.h"
@@ -26,7 +27,6 @@
 #include "tool/file_cameras.h"
 #include "tool/leftovers.h"
 #include "tool/output.h"
-#include "tool/picture_out.h"
 #include "tool/plural.h"
 #include "teller.h"
 #include "tool/threads.h"
@@ -218,8 +218,6 @@ static int parse(settings *s, int argc, char **argv)
     s->scene = argv[optind + 1];
     if (s->sheet != NULL && !ted4_has_suffix(s->sheet, ".png"))
         return failed(s->sheet, "--sheet writes .png only");
-    if (s->sheet != NULL && !s->force && ted4_output_exists(s->sheet))
-        return failed(s->sheet, "exists; -f overwrites");
     return -1;
 }
 
@@ -291,11 +289,14 @@ static int in_split(const session *s, size_t i)
     return s->data.pictures[i].is_test == s->set->want_test;
 }
 
-static int choose_rows(session *s)
+static int begin_sheet(session *s)
 {
     const size_t rows = ted4_sheet_choose(&s->data, s->set->want_test, SHEET_ROWS, s->row);
     const ted4_camera *const c = &s->data.pictures[s->row[0]].camera;
+    char why[256];
 
+    if (ted4_file_writable(s->set->sheet, s->set->force, "", why, sizeof why) != 0)
+        return complain(why);
     return ted4_sheet_init(&s->sheet, c->width, c->height, (int)rows) == 0
                ? TED4_EXIT_FINE
                : failed(s->set->sheet, "out of memory");
@@ -541,7 +542,7 @@ static int evaluate(session *s)
         ted4_eval_images_begin(set->images, n, set->moving, set->force, &m) != 0)
         return complain(m.text);
     if (set->sheet != NULL)
-        code = choose_rows(s);
+        code = begin_sheet(s);
     if (code == TED4_EXIT_FINE && set->colours)
         code = fit_colours(s);
     if (code == TED4_EXIT_FINE && set->moving)
@@ -556,9 +557,8 @@ static int evaluate(session *s)
             &teller, &(ted4_facts) { .kind = TED4_TELL_DRAWING, .step = s->sum.views, .total = n });
     }
     if (code == TED4_EXIT_FINE && set->sheet != NULL &&
-        ted4_picture_write(set->sheet, s->sheet.width * TED4_SHEET_COLUMNS,
-                           s->sheet.height * s->sheet.rows, s->sheet.rgb, why, sizeof why) != 0)
-        code = failed(set->sheet, why);
+        ted4_eval_sheet_write(&s->sheet, set->sheet, set->force, why, sizeof why) != 0)
+        code = complain(why);
     if (code == TED4_EXIT_FINE)
         code = refuse_pair(s, ted4_belongs_pictures(&s->squares, why, sizeof why), 0, why);
     if (code == TED4_EXIT_FINE)

@@ -106,6 +106,11 @@ check two_encoders "$page" \
     '| 2 of 3 scenes; most: moment +2.0 %†; rows of two encoders: chair | undecided; as first' \
     '| 0 bytes for time; 1000 bytes at 30.00 dB, whole 1500 at 30.00 dB† | met |' \
     'small 750 at 30.00 dB†; the rows are of two encoders | undecided |'
+rows 150 | table | grep -v '^things8' >"$out/capacity.csv"
+make_page || fail page "status $?"
+check first_unknown "$page" '| 0, 100, 220, 150 | **missed** |'
+: >"$out/capacity.csv"
+expect no_columns 1 "$out/capacity.csv: no line with the names of columns" make_page
 rm "$out/capacity.csv"
 : >"$out/states"
 make_page || fail empty "status $?"

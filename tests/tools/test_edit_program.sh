@@ -6,7 +6,7 @@
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 . tests/support/speak.sh
-need edit_program python3 ted4enc ted4dec ted4info ted4edit ted4scene
+need edit_program python3 ted4enc ted4eval ted4dec ted4info ted4edit ted4scene
 equal() { if [ "$2" = "$3" ]; then ok "$1"; else fail "$1" "$2, expected $3"; fi; }
 info() { "$TED4_BUILD/ted4info" "$out/$1.ted4"; }
 hash_of() { info "$1" | sed -n 's/^hash *//p'; }
@@ -31,6 +31,23 @@ equal json "$("$TED4_BUILD/ted4info" "$out/all.ted4" --json | grep -o '"type":"[
     tr -d '\n')" '"type":"META""type":"CAMS""type":"THMB"'
 encode again --title 'A pop' --author 'Somebody' --licence CC0-1.0 --cameras --thumbnail
 cmp -s "$out/all.ted4" "$out/again.ted4" && ok deterministic || fail deterministic differ
+
+# Each camera of "turns" has one picture, at a time of its own: what the file lists has it as well.
+equal times_of_still "$("$TED4_BUILD/ted4info" "$out/all.ted4" --cameras | grep -c '"time"')" 0
+"$TED4_BUILD/ted4scene" toys -o "$out/turns" --turns --cameras 6 --test-cameras 0 --size 32x24 \
+    -j 1 2>/dev/null
+"$TED4_BUILD/ted4enc" "$out/turns" -o "$out/turns.ted4" --preset draft --iterations 40,20 --seed 1 \
+    --capacity fixed --cameras -j 1 -q || fail encode_turns "no file"
+"$TED4_BUILD/ted4dec" "$out/turns.ted4" --render "$out/taken%d.png" --camera file -q
+"$TED4_BUILD/ted4eval" "$out/turns.ted4" "$out/turns" --split train --images "$out/turns.pictures" \
+    --anyway -q >"$out/err" 2>&1 || fail eval_turns "$(cat "$out/err")"
+n=0
+for picture in "$out/turns.pictures/ours"/*.png; do
+    cmp -s "$picture" "$out/taken$n.png" && n=$((n + 1))
+done
+equal times_of_moving "$n" "$("$TED4_BUILD/ted4info" "$out/turns.ted4" --cameras |
+    grep -c '"time"')"
+[ $n -gt 2 ] && ok pictures_of_moving || fail pictures_of_moving "$n"
 
 # Stripped down to the last byte, and set again.
 edit "$out/all.ted4" -o "$out/bare.ted4" --strip all
@@ -116,6 +133,9 @@ expect strip_none 0 "ted4edit: note: $out/plain.ted4: no chunk to strip" \
 refuse no_direction 'ted4edit: --up: expected an axis, as z, or a direction X,Y,Z' --up 0,0,0
 refuse no_png "ted4edit: $out/path.json: expected a PNG file of at most 1024 x 1024 pixels" \
     --thumbnail "$out/path.json"
+head -c 60 "$out/view0.png" >"$out/short.png"
+refuse short_png "ted4edit: $out/short.png: a PNG file that is cut short or damaged" \
+    --thumbnail "$out/short.png"
 refuse no_list 'ted4edit: ' --cameras "$out/view0.png"
 sed 's/"frame":3/"frame":4/' "$out/path.json" >"$out/late.json"
 refuse late_frame "ted4edit: $out/late.json: camera 0: frame 4, but the scene has 4" \

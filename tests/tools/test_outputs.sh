@@ -112,6 +112,15 @@ expect dangling_forced 0 "the scene is the same" "$bin/ted4edit" "$out/a.ted4" \
 ln -s elsewhere/x.png "$out/at/x.png"
 expect dangling_sheet 3 "x.png: exists; -f overwrites" "$bin/ted4eval" "$out/a.ted4" "$scene" \
     --sheet "$out/at/x.png"
+# A sheet that cannot be written is told of before pictures are compared; one that would take the
+# place of a picture of the same run goes beside it.
+expect sheet_nowhere 3 "ted4eval: $out/nowhere/x.png: cannot be written" "$bin/ted4eval" \
+    "$out/a.ted4" "$scene" --anyway -v --sheet "$out/nowhere/x.png"
+equal sheet_nowhere_first "$(grep -c psnr "$out/said")" 0
+mkdir -p "$out/among/truth"
+expect sheet_among 3 "png holds the result" "$bin/ted4eval" "$out/a.ted4" "$scene" \
+    --anyway --images "$out/among" --sheet "$out/among/truth/00000.png"
+equal sheet_beside "$(find "$out/among/truth" -name '00000.*.png' | wc -l)" 1
 
 # ---- a pipe, or a device, is neither replaced nor written ----
 mkfifo "$out/at/pipe"
@@ -125,8 +134,8 @@ special() {
 says="Operation not supported"
 special export "$bin/ted4dec" "$out/a.ted4" -o b.ply --time 0 -f
 special render "$bin/ted4dec" "$out/a.ted4" --render b.png --orbit 1 -f
-special sheet "$bin/ted4eval" "$out/a.ted4" "$scene" --sheet b.png -f
 says="is a pipe or a device, expected a file name"
+special sheet "$bin/ted4eval" "$out/a.ted4" "$scene" --sheet b.png -f
 special edit "$bin/ted4edit" "$out/a.ted4" -o b.ted4 -f --title x
 special encode "$bin/ted4enc" "$scene" -o b.ted4 $small -f
 special checkpoint "$bin/ted4enc" "$scene" -o c.ted4 $small -f --checkpoint b.point

@@ -19,6 +19,8 @@ mkdir "$out/none" "$out/full"
 echo "no video" >"$out/text.mp4"
 echo here >"$out/full/file"
 refuse usage 3 "usage: own-video.sh FOLDER VIDEO" sh tools/own-video.sh "$out/s"
+refuse line_break 3 "a name has a line break, a tab or the like" \
+    sh tools/own-video.sh "$(printf '%s/a\nb' "$out")" "$out/text.mp4"
 refuse no_tools 3 "there is no program ffmpeg (Debian:" env PATH="$out/none" "$sh" \
     tools/own-video.sh "$out/s" "$out/text.mp4"
 # Every digit of COLMAP's numbers is kept; this pose has no rotation.

@@ -33,6 +33,11 @@ expect rate_resumed 0 'c: going on from step 50' enc -o f.ted4 --checkpoint c --
 expect rate_written 0 'frames      4 at 6.5 per second' "$TED4_BUILD/ted4info" f.ted4
 expect device 0 'd.ted4: ' enc -o d.ted4 --log /dev/null
 
+# The log does not get what is meant for a closed standard error.
+enc -o s.ted4 --log s.log -v 2>&-
+all_json() { [ -s "$1" ] && [ "$(grep -c . "$1")" = "$(grep -c '^{.*}$' "$1")" ]; }
+all_json s.log && ok closed_stderr || fail closed_stderr "$(cat s.log)"
+
 # One name for two outputs.
 expect same_log 3 'ted4enc: --log and -o: both are w.ted4' enc -o w.ted4 --log w.ted4
 expect same_stage1 3 'ted4enc: --stage1 and --checkpoint: both are ./t' \

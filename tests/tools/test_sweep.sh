@@ -31,6 +31,15 @@ stand_ins --merge >"$out/said" 2>&1
 cmp -s "$out/sweep.csv" "$out/whole.csv" && [ -z "$(ls "$out/build/sweep/rows")" ] && ok merge ||
     fail merge "$(cat "$out/said")"
 
+# A row of the wanted options stays in spite of a file that others have left.
+sed 's/^\(room-whole-1,[^-,]*\)-[^,]*/\1-aaaaaaaaaa/' "$out/whole.csv" >"$out/sweep.csv"
+cp "$out/sweep.csv" "$out/older.csv"
+sed -n 's/^\(room-whole-1\),[^,]*/\1,ffffffffff-bbbbbbbbbb/p' "$out/whole.csv" \
+    >"$out/build/sweep/rows/room-whole-1.row"
+stand_ins --merge >"$out/said" 2>&1
+cmp -s "$out/sweep.csv" "$out/older.csv" && [ -z "$(ls "$out/build/sweep/rows")" ] &&
+    ok left_over || fail left_over "$(cat "$out/said" "$out/sweep.csv")"
+
 # A script that is terminated ends after its training, which has a checkpoint to write.
 stand_in build/ted4enc <<END
 trap 'sleep 1; echo saved >"$out/checkpoint"; exit 130' TERM
