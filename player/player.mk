@@ -35,12 +35,17 @@ player-conformance: $W/ted4.wasm $B/ted4conf
 	    $B/ted4conf run --decoder 'node player/test/driver.mjs' \
 	    --memory 0 --once --timeout 60
 
-# The package for npm. The module lies beside package.json, where git ignores it.
-PACKAGE_SRC = $(addprefix player/,package.json README.md) \
+# The licences of what the module is made of: BSD-2-Clause asks for their texts beside binaries.
+$W/LICENSE: LICENSE /usr/include/xxhash.h player/player.mk
+	@mkdir -p $(@D)
+	{ cat LICENSE; echo; sed '/\*\//q' /usr/include/xxhash.h; } >$@
+
+# The package for npm. The module and its licences lie beside package.json, where git ignores them.
+PACKAGE_SRC = $W/LICENSE $(addprefix player/,package.json README.md) \
               $(wildcard player/src/* player/adapters/*.js player/adapters/*.d.ts)
 player-package: $W/ted4.tgz
 $W/ted4.tgz: $W/ted4.wasm $(PACKAGE_SRC)
-	cp $< player/ted4.wasm
+	cp $< $W/LICENSE player
 	cd player && npm pack --silent --pack-destination "$(abspath $W)" >"$(abspath $W)/packed"
 	mv "$W/$$(cat $W/packed)" $@
 DEPS_PLAYER = clang-19 lld-19 nodejs $(if $(shell command -v npm),,npm)
@@ -49,8 +54,8 @@ deps-player: deps
 .PHONY: player-wasm player-test player-conformance player-package deps-player
 
 # The page (page/), by esbuild and the packages that player/package-lock.json pins; they lie in the
-# build folder, as do those that only the tests need (player/test/package-lock.json). The licence of
-# PlayCanvas comes first in player.js.
+# build folder, as do those that only the tests need (player/test/package-lock.json). The licences
+# come first in player.js.
 NPM      = $W/npm
 NPM_TEST = $W/npm-test
 ESBUILD  = $(NPM)/node_modules/.bin/esbuild --bundle --minify --format=iife --target=es2022 \
@@ -71,11 +76,12 @@ $W/index.html $W/style.css: $W/%: player/page/%
 	cp $< $@
 $W/worker.txt: $(PAGE_SRC) $(NPM)/installed
 	NODE_PATH="$(abspath $(NPM)/node_modules)" $(ESBUILD) player/src/worker.js --outfile=$@
-$W/player.js: $(PAGE_SRC) $W/worker.txt $(NPM)/installed
+$W/player.js: $(PAGE_SRC) $W/worker.txt $W/LICENSE $(NPM)/installed
 	NODE_PATH="$(abspath $(NPM)/node_modules)" $(ESBUILD) player/page/main.js \
 	    --loader:.txt=text --outfile=$@.new \
 	    --alias:worker-text="$(abspath $W/worker.txt)" --log-override:empty-import-meta=silent
-	{ echo '/*! PlayCanvas:'; cat $(PAGE_LICENCE); echo '*/'; cat $@.new; } >$@
+	{ sed '1s,^,/*! ,' $W/LICENSE; echo '/*! PlayCanvas:'; cat $(PAGE_LICENCE); echo '*/'; \
+	    cat $@.new; } >$@
 	@rm $@.new
 player-html: player
 	node player/export.mjs $W "$(FILE)" "$(OUT)"
@@ -86,6 +92,7 @@ player-html: player
 # TypeScript. Firefox has no WebGL without a display.
 T       = $W/test
 TEST_PLAYER = TED4_PLAYER="$(abspath $W)" TED4_SCENE="$(abspath $T/occluder.ted4)" \
+              TED4_SMALL="$(abspath $T/small.ted4)" \
               TED4_OUT="$(abspath $T)" TED4_PROGRAMS="$(abspath $B)" \
               TED4_MODULES="$(abspath $(NPM_TEST)/node_modules)" \
               TED4_PACKAGE="$(abspath $W/ted4.tgz)"
@@ -95,7 +102,7 @@ $W/adapters/index.html: player/adapters/pages/index.html
 $W/adapters/%.js: player/adapters/pages/%.js $(PAGE_SRC) $(wildcard player/adapters/pages/*.js) \
     $(NPM)/installed $(NPM_TEST)/installed
 	NODE_PATH="$(abspath $(NPM_TEST)/node_modules)" $(ESBUILD) $< --outfile=$@
-test-player: player $(ADAPTERS) $W/ted4.tgz $T/occluder.ted4 $B/ted4dec $B/ted4edit
+test-player: player $(ADAPTERS) $W/ted4.tgz $T/occluder.ted4 $T/small.ted4 $B/ted4dec $B/ted4edit
 	$(TEST_PLAYER) node --test player/test/conversions.mjs player/test/package.mjs \
 	    player/test/types.mjs
 	$(TEST_PLAYER) node --test --test-concurrency=1 player/test/*.browser.mjs
@@ -103,10 +110,11 @@ test-player: player $(ADAPTERS) $W/ted4.tgz $T/occluder.ted4 $B/ted4dec $B/ted4e
 	$(TEST_PLAYER) TED4_BROWSER=firefox TED4_OUT="$(abspath $T/firefox)" \
 	    xvfb-run -a -s '-screen 0 1600x1200x24' \
 	    node --test --test-concurrency=1 player/test/*.browser.mjs
-$T/occluder.ted4: | $B/ted4scene $B/ted4enc
+$T/small.ted4: UNIT = --unit 0.000001
+$T/occluder.ted4 $T/small.ted4: $T/%.ted4: | $B/ted4scene $B/ted4enc
 	@mkdir -p $T
-	$B/ted4scene occluder -o $T/scene -f
-	$B/ted4enc $T/scene -o $@ --preset draft --iterations 800,400 --seed 1 \
+	$B/ted4scene occluder -o $T/$*-scene -f $(UNIT)
+	$B/ted4enc $T/$*-scene -o $@ --preset draft --iterations 800,400 --seed 1 \
 	    --cameras -f -q
 player-speed: player $B/ted4dec $(NPM_TEST)/installed
 	$(TEST_PLAYER) node player/test/speed.mjs $(FILE)

@@ -116,7 +116,8 @@ typedef struct {
     /* The number of anchors, and the largest number of Gaussians per anchor. */
     uint32_t n_anchors, n_offsets;
     /* The number of frames, of which frame j is at time j / (frames - 1), or at 0 if there is only
-     * one. The frame rate is rate_num / rate_den frames per second. */
+     * one; R-HDR-005 says how to query the times of more than 2^24 frames. The frame rate is
+     * rate_num / rate_den frames per second. */
     uint32_t frames, rate_num, rate_den;
     size_t n_gaussians;    /* number of kept offsets, which is the number of records per query */
     uint32_t n_dynamic;    /* number of anchors that move */

@@ -23,7 +23,8 @@ fn getRotation() -> vec4f {
 }
 `;
 
-// A container for n Gaussians.
+// A container for n Gaussians. PlayCanvas rounds scales to binary16 in world coordinates: scaling
+// the entity by 2 ** -info.exponent, and the camera's position with it, suits scenes of any size.
 export function createContainer(device, n) {
   const streams = STREAMS.map((name) => ({ name, format: PIXELFORMAT_R32F }));
   const format = new GSplatFormat(device, streams, { readGLSL: READ_GLSL, readWGSL: READ_WGSL });

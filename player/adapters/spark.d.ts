@@ -11,6 +11,8 @@ export function annexI(pixel?: number):
 /** For n Gaussians, 1 or more: the splats of a SplatMesh, { packedSplats }. */
 export function createPackedSplats(n: number): PackedSplats;
 
-/** Puts Gaussians into splats that were made for as many of them. The mesh then needs
- *  updateVersion(). */
-export function updatePackedSplats(packed: PackedSplats, gaussians: Gaussians): void;
+/** Puts Gaussians into splats that were made for as many of them. Lengths are divided by unit (1 if
+ *  it is left out), which is to be the unit of the viewer's world as well: Spark keeps centres up to
+ *  65504 and standard deviations from 6e-6 to 8103, in the splats and once more as they are in the
+ *  world. 2 ** info.exponent suits scenes of any size. The mesh then needs updateVersion(). */
+export function updatePackedSplats(packed: PackedSplats, gaussians: Gaussians, unit?: number): void;

@@ -29,12 +29,15 @@ export function createPackedSplats(n) {
   return packed;
 }
 
-// Puts Gaussians (Scene.gaussians, ClientScene.gaussians) into packed. The mesh then needs
-// updateVersion().
-export function updatePackedSplats(packed, { n, mean, scale, rotation, opacity, colour }) {
+// Puts Gaussians (Scene.gaussians, ClientScene.gaussians) into packed, with lengths in a unit that
+// is to be the unit of the viewer's world as well: Spark packs splats once more, as they are in the
+// world. It keeps standard deviations from 6e-6 to 8103. The mesh then needs updateVersion().
+export function updatePackedSplats(packed, { n, mean, scale, rotation, opacity, colour },
+  unit = 1) {
   const [x, y, z] = mean, [sx, sy, sz] = scale, [qw, qx, qy, qz] = rotation, [r, g, b] = colour;
   for (let i = 0; i < n; i++)
-    setPackedSplat(packed.packedArray, i, x[i], y[i], z[i], sx[i], sy[i], sz[i],
-      qx[i], qy[i], qz[i], qw[i], opacity[i], r[i], g[i], b[i]);
+    setPackedSplat(packed.packedArray, i, x[i] / unit, y[i] / unit, z[i] / unit,
+      sx[i] / unit, sy[i] / unit, sz[i] / unit, qx[i], qy[i], qz[i], qw[i],
+      opacity[i], r[i], g[i], b[i]);
   packed.needsUpdate = true;
 }

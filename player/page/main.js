@@ -61,12 +61,18 @@ function showOpened() {
   timeline.reset();
 }
 
+// Of a file, and of its times.
+function forgetMessages() {
+  clearMessage("file");
+  clearMessage("time");
+}
+
 // since: when the file was asked for; fragment(): of its address.
 async function open(name, reading, since, fragment) {
-  clearMessage();
+  forgetMessages();
   try {
     if (!await player.open(reading, name, since, fragment)) return;
-    clearMessage();
+    forgetMessages();
     showOpened();
   } catch (error) {
     showMessage(explain(name, error), "file");
@@ -80,11 +86,13 @@ async function read(address) {
 }
 
 async function showSizes() {
-  if (player.file === null || !at("sizes").open) return;
+  const { file } = player;
+  if (file === null || !at("sizes").open) return;
   try {
-    showElements(await player.bytesByElement());
+    const rows = await player.bytesByElement();
+    if (file === player.file) showElements(rows);
   } catch (error) {
-    showMessage(`Bytes by element: ${error.message}`, "file");
+    if (file === player.file) showMessage(`Bytes by element: ${error.message}`, "file");
   }
 }
 

@@ -72,7 +72,8 @@ export class Player {
     const opening = this.#opening = {};
     try {
       const opened = await this.#prepare(await reading);
-      if (opening !== this.#opening) opened.scene.close();
+      // A worker that has failed has no scene to let go of.
+      if (opening !== this.#opening) opened.scene.close().catch(() => {});
       else this.#begin(opened, { name, since }, fragment());
     } catch (error) {
       if (opening === this.#opening) throw error;
@@ -109,7 +110,8 @@ export class Player {
       cameras, milliseconds: scene.milliseconds,
     };
     this.clock.reset(scene.info.frames, scene.info.rate);
-    this.#view.clear();
+    this.#view.clear(2 ** scene.info.exponent);
+    this.#pose = null;
     this.#view.setBackground(scene.info.background);
     Object.assign(this.navigation, { up, distance: 2 ** scene.info.exponent, ...start });
     if (start === null) this.useCamera(0, timeOfFragment(fragment, scene.info));
@@ -213,8 +215,7 @@ export class Player {
     if (before?.width !== width || before.height !== height) this.#view.resize(width, height);
     this.#pose = { camera, width, height };
     const shown = fitted(camera, width, height);
-    this.#view.setCamera(shown, NEAREST * 2 ** this.file.info.exponent,
-      this.#focal === null ? 1 : this.#focal / shown.fx);
+    this.#view.setCamera(shown, NEAREST, this.#focal === null ? 1 : this.#focal / shown.fx);
   }
 
   // What the Gaussians depend on: the time, and the camera's place if colours depend on it.

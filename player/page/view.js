@@ -20,6 +20,9 @@ export class View {
   #entity = null;
   #container = null;
   #projection = new Mat4();
+  // A world unit of the drawing, a power of two of the scene's units: PlayCanvas keeps scales in
+  // binary16, as world coordinates.
+  #unit = 1;
   #frames = 0; // still to be drawn
   #isSorted = true;
   // Since the last frame: whether the Gaussians were marked as changed, and whether a sort ended.
@@ -106,13 +109,14 @@ export class View {
     graphicsDevice.on("devicerestored", () => lost(false));
   }
 
-  // Nothing is shown until the next Gaussians.
-  clear() {
+  // Nothing is shown until the next Gaussians. unit: the size of their scene, a power of two.
+  clear(unit) {
     this.#entity?.destroy();
     this.#container?.destroy();
     this.#entity = this.#container = null;
     this.#isSorted = true;
     this.hasPicture = false;
+    this.#unit = unit;
     this.#change();
   }
 
@@ -120,6 +124,7 @@ export class View {
     this.#container = createContainer(this.#app.graphicsDevice, n);
     this.#entity = new Entity("gaussians", this.#app);
     this.#entity.addComponent("gsplat", { resource: this.#container });
+    this.#entity.setLocalScale(1 / this.#unit, 1 / this.#unit, 1 / this.#unit);
     this.#app.root.addChild(this.#entity);
   }
 
@@ -132,14 +137,14 @@ export class View {
     this.#mark();
   }
 
-  // camera: of annex I, for the whole canvas; near: the depth at which Gaussians begin to show;
-  // pixel: the width of a pixel (adapters/pixel.js).
+  // camera: of annex I, for the whole canvas; near: the depth at which Gaussians begin to show, in
+  // units of clear(); pixel: the width of a pixel (adapters/pixel.js).
   setCamera(camera, near, pixel) {
     const { width, height, fx, fy, cx, cy, R } = camera, far = DEPTHS * near;
     // Camera axes of PlayCanvas point right, up, back.
     const axes = new Mat4();
     axes.set([R[0], R[1], R[2], 0, -R[3], -R[4], -R[5], 0, -R[6], -R[7], -R[8], 0, 0, 0, 0, 1]);
-    this.#camera.setPosition(...centreOf(camera));
+    this.#camera.setPosition(...centreOf(camera).map((v) => v / this.#unit));
     this.#camera.setRotation(new Quat().setFromMat4(axes));
     this.#projection.set([
       2 * fx / width, 0, 0, 0, 0, 2 * fy / height, 0, 0,

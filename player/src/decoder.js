@@ -72,9 +72,9 @@ export class Decoder {
   }
 
   // Strict decoding of a whole file. options: maxBytes of memory and maxWork (spec 13.4) that the
-  // file may ask for; budget: true also attributes its bytes to elements; keepsFile: false lets go
-  // of the bytes once they are decoded, and then there is no tier 0. Throws Ted4Error, or TypeError
-  // for a path or an address in place of bytes.
+  // file may ask for, and maxQueryWork that each query may; budget: true also attributes its bytes
+  // to elements; keepsFile: false lets go of the bytes once they are decoded, and then there is no
+  // tier 0. Throws Ted4Error, or TypeError for a path or an address in place of bytes.
   open(bytes, options = {}) {
     const scene = new Scene(new WebAssembly.Instance(this.#module, {}).exports, bytes, options);
     scene.decode();
@@ -101,9 +101,10 @@ export class Scene {
     this.#wasm = wasm;
     this.#bytes = bytesOf(bytes);
     this.#options = {
-      maxBytes: DEFAULT_MAX_BYTES, maxWork: 0, budget: false, keepsFile: true, ...options,
+      maxBytes: DEFAULT_MAX_BYTES, maxWork: 0, maxQueryWork: 0, budget: false, keepsFile: true,
+      ...options,
     };
-    for (const name of ["maxBytes", "maxWork"])
+    for (const name of ["maxBytes", "maxWork", "maxQueryWork"])
       if (!(this.#options[name] >= 0))
         throw new RangeError(`${name}: ${this.#options[name]}, expected a number from 0`);
   }
@@ -207,7 +208,8 @@ export class Scene {
     const [x, y, z] = camera;
     if (camera.length !== 3 || ![x, y, z].every((v) => typeof v === "number"))
       throw new TypeError(`camera: ${camera}, expected three numbers`);
-    const code = this.#wasm.ted4_wasm_query(num, den, x, y, z, this.#options.maxBytes);
+    const { maxBytes, maxQueryWork } = this.#options;
+    const code = this.#wasm.ted4_wasm_query(num, den, x, y, z, maxBytes, maxQueryWork);
     if (code !== 0) throw this.#error(code);
     const view = this.#view();
     const at = this.#wasm.ted4_wasm_gaussians();

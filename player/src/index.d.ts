@@ -17,8 +17,10 @@ export class Ted4Error extends Error {
 export interface OpenOptions {
   /** Bytes of memory that the file may ask for; 2 GiB if it is missing. */
   maxBytes?: number;
-  /** Steps of spec 13.4 that the file may ask for; 0, the default: any. */
+  /** Steps of spec 13.4 that decoding may take (W_E); 0, the default: any. */
   maxWork?: number;
+  /** Steps that each query may take (W_R); 0, the default: any. */
+  maxQueryWork?: number;
   /** Attribute the file's bytes to its elements, too. */
   budget?: boolean;
   /** Keep the file's bytes, which only tier(0) needs, after decoding; true if it is missing. A

@@ -5,7 +5,7 @@ import { basename, dirname, join } from "node:path";
 import { after, before, test } from "node:test";
 import { lookingAt } from "../page/camera.js";
 import { Browser } from "./browser.mjs";
-import { CAMERA, PLAYER, rendered, SCENE, withPixel } from "./fixture.mjs";
+import { CAMERA, PLAYER, rendered, SCENE, SMALL, SMALL_CAMERA, withPixel } from "./fixture.mjs";
 import { psnr } from "./pictures.mjs";
 import { serve } from "./server.mjs";
 
@@ -23,13 +23,13 @@ after(async () => {
 });
 
 // Decibels of the adapter's pictures at two times.
-async function shown(t, adapter, { option = "", camera = CAMERA } = {}) {
+async function shown(t, adapter, { option = "", camera = CAMERA, scene = SCENE } = {}) {
   const page = await browser.page(camera.width, camera.height);
-  await page.open(`${server.origin}/?adapter=${adapter}&file=${basename(SCENE)}${option}`);
+  await page.open(`${server.origin}/?adapter=${adapter}&file=${basename(scene)}${option}`);
   const decibels = [];
   for (const frame of FRAMES) {
     await page.evaluate(`show(${JSON.stringify(camera)}, ${frame})`);
-    decibels.push(await psnr(page, await page.screenshot(), rendered(frame / LAST, camera)));
+    decibels.push(await psnr(page, await page.screenshot(), rendered(frame / LAST, camera, scene)));
   }
   t.diagnostic(`${adapter}${option}, pixels ${camera.pixel} times as wide: ` +
     `${decibels.map((v) => v.toFixed(1)).join(", ")} dB`);
@@ -57,6 +57,12 @@ test("PlayCanvas and Spark: amid the Gaussians, in a small window and a large on
   const amid = (lens) => lookingAt(lens, [-0.1, -0.4, 0.4], [0, 0, 0.3], [0, 0, 1]);
   assert.ok((await shown(t, "playcanvas", { camera: amid(CAMERA) })).least >= 40);
   assert.ok((await shown(t, "spark", { camera: amid(withPixel(1 / 8)) })).least >= 30);
+});
+
+test("PlayCanvas and Spark: a scene of a millionth of the size", async (t) => {
+  const small = { camera: SMALL_CAMERA, scene: SMALL };
+  assert.ok((await shown(t, "playcanvas", small)).least >= 40);
+  assert.ok((await shown(t, "spark", small)).least >= 30);
 });
 
 test("SuperSplat: a FrameSource", async (t) => {

@@ -65,7 +65,8 @@ test("a query that is none is refused, and never taken for another one", () => {
     assert.throws(() => scene.gaussians(num, den), { name: "Ted4Error", id: "query.range" });
   for (const camera of [[1, 2], [1, 2, 3, 4], ["1", 2, 3]])
     assert.throws(() => scene.frame(0, camera), TypeError);
-  for (const options of [{ maxBytes: -1 }, { maxBytes: NaN }, { maxWork: -1 }])
+  for (const options of [{ maxBytes: -1 }, { maxBytes: NaN }, { maxWork: -1 },
+    { maxQueryWork: -1 }])
     assert.throws(() => decoder.open(contents[0].bytes, options), RangeError);
 });
 
@@ -88,6 +89,13 @@ test("a broken file is refused with identifier and offset", () => {
 
 test("a bound on memory is kept", () => {
   assert.throws(() => decoder.open(contents[0].bytes, { maxBytes: 1000 }), { id: "limit.memory" });
+});
+
+test("a bound on the work of queries is kept, and does not bound decoding", () => {
+  const least = decoder.open(contents[0].bytes, { maxQueryWork: 1 });
+  assert.throws(() => least.frame(0), { verdict: "limit", id: "limit.work" });
+  assert.ok(decoder.open(contents[0].bytes, { maxQueryWork: 1e9 }).frame(0).n > 0);
+  assert.throws(() => decoder.open(contents[0].bytes, { maxWork: 1 }), { id: "limit.work" });
 });
 
 test("a time beyond the last is refused", () => {

@@ -155,6 +155,46 @@ test("a message goes when it is closed, hidden with the rest, or when the next f
     await page.close();
   });
 
+test("a lost drawing context is told of until it is back, whatever files come", async () => {
+  const page = await opened(`?file=${NAME}`);
+  const says = (text) => `!${MESSAGE}.hidden && ${MESSAGE}.textContent.includes("${text}")`;
+  await page.until("globalThis.ted4Player?.isSettled");
+  await page.evaluate(`globalThis.loss = document.getElementById("picture").getContext("webgl2")
+    .getExtension("WEBGL_lose_context"); loss.loseContext(); 0`);
+  await page.until(says("drawing context"));
+  await page.evaluate(`drop("bad", "bad.ted4"); 0`);
+  await page.until(says("bad is refused"));
+  await click(page, "close-message");
+  assert.equal(await page.evaluate(says("drawing context")), true);
+  await page.evaluate(`drop("good", "${NAME}"); 0`);
+  await page.until(`ted4Player.file.name === "good"`);
+  assert.equal(await page.evaluate(says("drawing context")), true);
+  await page.evaluate("loss.restoreContext(); 0");
+  await page.until(isShown("good"));
+  assert.equal(await page.evaluate(`${MESSAGE}.hidden`), true);
+  await page.close();
+});
+
+test("bytes by element that come when another file is open are not shown", async () => {
+  const page = await opened(`?file=${NAME}`);
+  await page.until("globalThis.ted4Player?.isSettled");
+  await page.evaluate(`globalThis.answers = [];
+    ted4Player.bytesByElement = () => new Promise((resolve) => { answers.push(resolve); });
+    document.getElementById("sizes").open = true; 0`);
+  await page.until("answers.length === 1");
+  await page.evaluate(`drop("good", "${NAME}"); 0`);
+  await page.until("answers.length === 2");
+  const rows = await page.evaluate(`(async () => {
+    const row = (element) => [{ chunk: "TILE", element, bytes: 1, symbols: 1 }];
+    answers[1](row("new"));
+    answers[0](row("old"));
+    await new Promise((resolve) => { setTimeout(resolve); });
+    return document.getElementById("by-element").textContent;
+  })()`);
+  assert.equal(rows, "TILE new1");
+  await page.close();
+});
+
 test("a message about a time goes when another one can be evaluated", async () => {
   const page = await opened(`?file=${NAME}`);
   await page.until("globalThis.ted4Player?.isSettled");

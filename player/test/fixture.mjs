@@ -14,6 +14,7 @@ export function needed(name) {
 }
 
 export const SCENE = needed("TED4_SCENE"); // a .ted4 file of the scene "occluder", z up
+export const SMALL = needed("TED4_SMALL"); // of the same scene at a millionth of the size
 export const PLAYER = needed("TED4_PLAYER"); // folder of the built player
 const PROGRAMS = needed("TED4_PROGRAMS"); // folder of ted4dec and ted4edit
 export const OUT = process.env.TED4_OUT ?? mkdtempSync(join(tmpdir(), "ted4-player-"));
@@ -21,6 +22,9 @@ export const OUT = process.env.TED4_OUT ?? mkdtempSync(join(tmpdir(), "ted4-play
 // Twice as many pixels each way as the pictures of which the scene was learnt.
 const LENS = { width: 320, height: 240, fx: 320, fy: 320, cx: 160, cy: 120, pixel: 0.5 };
 export const CAMERA = lookingAt(LENS, [-1.3, -3.2, 1.9], [0, 0, 0.3], [0, 0, 1]);
+
+// The same view of SMALL.
+export const SMALL_CAMERA = { ...CAMERA, t: CAMERA.t.map((v) => 1e-6 * v) };
 
 // The same view in pixels r times as wide as those of training (annex I.4).
 export function withPixel(r) {
@@ -38,10 +42,10 @@ export function edit(...args) {
 }
 
 // The PNG, base64, of the camera at a time, by the decoder.
-export function rendered(time, camera = CAMERA) {
+export function rendered(time, camera = CAMERA, scene = SCENE) {
   const list = join(OUT, "camera.json"), picture = join(OUT, "rendered.png");
   writeFileSync(list, JSON.stringify([{ ...camera, time }]));
-  decode(SCENE, "--render", picture, "--camera", list, "-f", "-q");
+  decode(scene, "--render", picture, "--camera", list, "-f", "-q");
   return readFileSync(picture).toString("base64");
 }
 

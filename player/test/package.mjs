@@ -8,7 +8,7 @@ import {
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { needed, SCENE } from "./fixture.mjs";
+import { needed, PLAYER, SCENE } from "./fixture.mjs";
 
 const README = new URL("../README.md", import.meta.url);
 let folder, installed;
@@ -30,6 +30,15 @@ test("the package holds all that it exports", () => {
     .filter((path) => !path.includes("*"));
   assert.ok(paths.includes("./ted4.wasm"));
   for (const path of paths) assert.ok(existsSync(join(installed, path)), path);
+});
+
+test("the licences of what it is made of are in the package and in the page's script", () => {
+  const licence = readFileSync(join(installed, "LICENSE"), "utf8");
+  const script = readFileSync(join(PLAYER, "player.js"), "utf8");
+  for (const [text, owners] of [[licence, ["the TED4 authors", "Yann Collet"]],
+    [script, ["the TED4 authors", "Yann Collet", "PlayCanvas Ltd"]]])
+    for (const owner of owners)
+      assert.match(text, new RegExp(`Copyright \\(c\\) [-0-9, ]*${owner}`, "i"), owner);
 });
 
 test("all that its adapters import is declared", () => {

@@ -8,7 +8,9 @@ import { basename, dirname, join } from "node:path";
 import { after, before, test } from "node:test";
 import { fileURLToPath, pathToFileURL } from "node:url";
 import { Browser } from "./browser.mjs";
-import { CAMERA, decode, edit, keep, OUT, PLAYER, rendered, SCENE, withPixel } from "./fixture.mjs";
+import {
+  CAMERA, decode, edit, keep, OUT, PLAYER, rendered, SCENE, SMALL, SMALL_CAMERA, withPixel,
+} from "./fixture.mjs";
 import { lookingAt } from "../page/camera.js";
 import { psnr, sideBySide } from "./pictures.mjs";
 import { serve } from "./server.mjs";
@@ -30,10 +32,10 @@ after(async () => {
   server?.close();
 });
 
-// Only the scene, through CAMERA.
-function showBare() {
-  return page.evaluate(`document.body.classList.add("bare");
-    ted4Player.navigation.camera = ${JSON.stringify(CAMERA)}; 0`);
+// Only the scene, through a camera.
+function showBare(of = page, camera = CAMERA) {
+  return of.evaluate(`document.body.classList.add("bare");
+    ted4Player.navigation.camera = ${JSON.stringify(camera)}; 0`);
 }
 
 test("a file is opened, and its hash is the one that the decoder prints", async () => {
@@ -85,6 +87,18 @@ test("pixels of other widths than those of training agree with ted4dec, too", as
     assert.ok(decibels >= LEAST_PSNR, `${r} times as wide: ${decibels} dB`);
   }
   await page.resize(CAMERA.width, CAMERA.height);
+});
+
+test("a scene of a millionth of the size agrees with ted4dec, too", async (t) => {
+  const small = await browser.page(CAMERA.width, CAMERA.height);
+  await small.open(`${server.origin}/?file=${basename(SMALL)}`);
+  await small.until("ted4Player.isSettled");
+  await showBare(small, SMALL_CAMERA);
+  await small.until("ted4Player.isSettled");
+  const decibels = await psnr(small, await small.screenshot(), rendered(0, SMALL_CAMERA, SMALL));
+  t.diagnostic(`${decibels.toFixed(1)} dB`);
+  assert.ok(decibels >= LEAST_PSNR, `${decibels} dB`);
+  await small.close();
 });
 
 test("of times that follow each other closely the last one stays on the screen", async () => {
@@ -224,7 +238,8 @@ test("a key that steps does not fly, too, where keyboards have it at the place o
 test("the question mark opens the help, which Escape closes", async () => {
   await page.press("?");
   assert.equal(await page.evaluate(`document.getElementById("help").open`), true);
-  await page.evaluate(`document.getElementById("help").close(); 0`);
+  await page.press("Escape");
+  assert.equal(await page.evaluate(`document.getElementById("help").open`), false);
 });
 
 test("bytes by element sum up to the file", async () => {

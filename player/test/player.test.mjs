@@ -149,3 +149,23 @@ test("a flight that is interrupted, as by a lost drawing context, goes on from w
     navigation.releaseAll();
     assert.ok(z() < before && z() > before - 0.1 * navigation.distance, `${before}, ${z()}`);
   }, fileWithCamera()));
+
+test("a worker that fails as it lets go of a file that another one has replaced harms nothing",
+  async () => {
+    class Failing extends StubWorker {
+      postMessage(message) {
+        if (message.type === "close") setTimeout(() => this.onerror({ message: "failed" }));
+        else super.postMessage(message);
+      }
+    }
+    let unhandled = null;
+    const hear = (error) => { unhandled = error; };
+    process.on("unhandledRejection", hear);
+    await withPlayer([new Failing(1, good)], async ({ player }) => {
+      await Promise.allSettled([player.open(new ArrayBuffer(12), "replaced"),
+        player.open(new ArrayBuffer(12), "last")]);
+      await after(50);
+    });
+    process.off("unhandledRejection", hear);
+    assert.equal(unhandled, null);
+  });

@@ -109,11 +109,11 @@ const ted4_info *EXPORT(ted4_wasm_info)(void)
     return &info;
 }
 
-/* The first query lays the networks out; the status. */
+/* The first query lays the networks out, if no query takes more than max_work steps; the status. */
 uint32_t EXPORT(ted4_wasm_query)(uint32_t num, uint32_t den, float x, float y, float z,
-                                 double max_bytes)
+                                 double max_bytes, double max_work)
 {
-    const ted4_options o = options(max_bytes, 0);
+    const ted4_options o = options(max_bytes, max_work);
     const ted4_query q = { num, den, { x, y, z } };
 
     if (recon == NULL) {

@@ -3,17 +3,19 @@ import { Entity, WORKBUFFER_UPDATE_ONCE } from "playcanvas";
 import { centreOf } from "../../page/camera.js";
 import { createContainer, updateContainer } from "../playcanvas.js";
 import { addCamera, drawn, startApp } from "./app.js";
-import { openScene } from "./scene.js";
+import { inUnits, openScene } from "./scene.js";
 
 let app = null, scene, container, entity;
 
 async function start(camera) {
   scene = await openScene();
   app = await startApp(camera);
-  addCamera(app, camera, scene.info);
+  addCamera(app, inUnits(camera, scene.info), { ...scene.info, exponent: 0 });
   container = createContainer(app.graphicsDevice, scene.info.gaussians);
   entity = new Entity("gaussians", app);
   entity.addComponent("gsplat", { resource: container });
+  const scale = 2 ** -scene.info.exponent;
+  entity.setLocalScale(scale, scale, scale);
   app.root.addChild(entity);
 }
 

@@ -14,6 +14,11 @@ export async function openScene() {
   return decoder.open(await response.arrayBuffer());
 }
 
+// A camera in the units of a scene.
+export function inUnits(camera, { exponent }) {
+  return { ...camera, t: camera.t.map((v) => v * 2 ** -exponent) };
+}
+
 // { toWorld, projection }, column by column; axes of the camera point right, up, back.
 export function matrices(camera, exponent) {
   const { width, height, fx, fy, cx, cy, R } = camera, [x, y, z] = centreOf(camera);

@@ -3,7 +3,7 @@ import { SparkRenderer, SplatMesh } from "@sparkjsdev/spark";
 import { Camera, Color, Scene, SRGBColorSpace, WebGLRenderer } from "three";
 import { centreOf } from "../../page/camera.js";
 import { annexI, createPackedSplats, updatePackedSplats } from "../spark.js";
-import { canvas, matrices, openScene } from "./scene.js";
+import { canvas, inUnits, matrices, openScene } from "./scene.js";
 
 let renderer = null, spark, world, eye, scene, packed, mesh;
 
@@ -19,7 +19,7 @@ async function start(camera) {
   world = new Scene();
   world.add(spark, mesh);
   await mesh.initialized;
-  const { toWorld, projection } = matrices(camera, scene.info.exponent);
+  const { toWorld, projection } = matrices(inUnits(camera, scene.info), 0);
   eye = new Camera();
   eye.matrixAutoUpdate = false;
   eye.matrix.fromArray(toWorld);
@@ -31,7 +31,7 @@ async function start(camera) {
 // Shows a frame through a camera of annex I, the same in all calls.
 globalThis.show = async (camera, frame) => {
   if (renderer === null) await start(camera);
-  updatePackedSplats(packed, scene.frame(frame, centreOf(camera)));
+  updatePackedSplats(packed, scene.frame(frame, centreOf(camera)), 2 ** scene.info.exponent);
   mesh.updateVersion();
   await spark.update({ scene: world, camera: eye });
   renderer.render(world, eye);
