@@ -253,6 +253,42 @@ static void test_update(void **state)
     ted4_colour_finish(&c);
 }
 
+/* Without a gradient of the picture, a step is against that of the penalty: p times the squares,
+ * and 10 p times the squared second differences. Adam's first moments are a tenth of the gradient.
+ */
+static void test_penalty(void **state)
+{
+    const double penalty = 0.3, h = 1e-5;
+    const ted4_dataset d = plan();
+    const double map[N] = { 0 };
+    const ted4_colour_map nothing = { 0 };
+    double value[3 * TED4_EXPOSURE_KNOTS];
+    ted4_colour c;
+
+    (void)state;
+    assert_int_equal(ted4_colour_init(&c, &d), 0);
+    assert_int_equal(ted4_exposure_init(&c.exposure, &d, c.corrected), 0);
+    fill(&c.exposure);
+    const size_t n = 3 * c.exposure.n_knots, at = 3 * n;
+
+    for (size_t i = 0; i < n; i++)
+        value[i] = (double)c.exposure.value[at + i];
+    ted4_colour_update(&c, 3, 7, nothing, 0.01, penalty);
+    for (size_t i = 0; i < n; i++) {
+        const double was = value[i];
+        double side[2];
+
+        for (int k = 0; k < 2; k++) {
+            value[i] = was + (k ? h : -h);
+            side[k] = loss_of(&c.exposure, value, map, 7, 10 * penalty, penalty) -
+                      loss_of(&c.exposure, value, map, 7, 0, 0);
+        }
+        value[i] = was;
+        expect_near(10 * (double)c.exposure.m[at + i], (side[1] - side[0]) / (2 * h), "moment", i);
+    }
+    ted4_colour_finish(&c);
+}
+
 /* ---- with pictures ---- */
 
 typedef struct {
@@ -445,11 +481,11 @@ static void test_resumed(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_knots),     cmocka_unit_test(test_gradient),
-        cmocka_unit_test(test_none),      cmocka_unit_test(test_gauge),
-        cmocka_unit_test(test_update),    cmocka_unit_test(test_found),
-        cmocka_unit_test(test_not_found), cmocka_unit_test(test_held_out),
-        cmocka_unit_test(test_resumed),
+        cmocka_unit_test(test_knots),    cmocka_unit_test(test_gradient),
+        cmocka_unit_test(test_none),     cmocka_unit_test(test_gauge),
+        cmocka_unit_test(test_update),   cmocka_unit_test(test_penalty),
+        cmocka_unit_test(test_found),    cmocka_unit_test(test_not_found),
+        cmocka_unit_test(test_held_out), cmocka_unit_test(test_resumed),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);
