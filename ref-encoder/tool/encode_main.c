@@ -145,9 +145,17 @@ static int run(const encoder *e, ted4_trainer *t)
     else if (!bad)
         bad = ted4_training_go(&training, 2) != 0 || ted4_training_code(&training, &coded) != 0;
     /* The file is written before the log is closed, so that it is not lost if closing fails. */
-    if (leads(e->exchange))
-        bad = bad || ted4_file_keep(r->out, r->force, coded.bytes, coded.size, training.why,
-                                    sizeof training.why) != 0;
+    if (leads(e->exchange) && coded.bytes != NULL) {
+        const int written = ted4_file_keep(r->out, r->force, coded.bytes, coded.size, training.why,
+                                           sizeof training.why) == 0;
+
+        if (bad && written)
+            ted4_teller_say(teller,
+                            "%s: the file of lambda %.5g, %zu bytes, is kept; with -f, a new "
+                            "search replaces it",
+                            r->out, coded.lambda, coded.size);
+        bad = bad || !written;
+    }
     bad = ted4_training_end(&training, bad) != 0;
     if (!bad) {
         say_exchange(e);

@@ -84,14 +84,18 @@ static int is_better(const ted4_coded *a, const ted4_coded *b, size_t target)
     return a->size <= target ? a->size > b->size : a->size < b->size;
 }
 
+static int fits(const ted4_training *t, const ted4_coded *c)
+{
+    return c->bytes != NULL && c->size <= t->request->target_size;
+}
+
 /* A trial has failed. Returns 0, after a warning, if an earlier one has found a file that fits, and
  * otherwise -1. A signal is obeyed, and one process of several does not know what the others do. */
 static int give_up(const ted4_training *t, const ted4_coded *best)
 {
     const ted4_exchange *x = t->trainer->exchange;
 
-    if (best->bytes == NULL || best->size > t->request->target_size || t->stopped != 0 ||
-        (x != NULL && x->n > 1))
+    if (!fits(t, best) || t->stopped != 0 || (x != NULL && x->n > 1))
         return -1;
     ted4_teller_error(t->teller, "warning: %s; the file of lambda %.5g is kept", t->why,
                       best->lambda);
@@ -102,12 +106,12 @@ static int give_up(const ted4_training *t, const ted4_coded *best)
  * search ends here. */
 static double learn(bracket *b, size_t target, ted4_coded *c, ted4_coded *best)
 {
-    const int fits = c->size <= target;
+    const int side = c->size <= target;
     const double size = (double)c->size, lambda = c->lambda;
 
-    b->lambda[fits] = ted4_math_log(lambda);
-    b->size[fits] = ted4_math_log(size);
-    b->have |= 1 << fits;
+    b->lambda[side] = ted4_math_log(lambda);
+    b->size[side] = ted4_math_log(size);
+    b->have |= 1 << side;
     b->trials++;
     if (is_better(c, best, target)) {
         ted4_coded_free(best);
@@ -115,7 +119,7 @@ static double learn(bracket *b, size_t target, ted4_coded *c, ted4_coded *best)
     } else {
         ted4_coded_free(c);
     }
-    if (fits ? size >= (1.0 - NEAR) * (double)target || lambda <= LEAST_LAMBDA
+    if (side ? size >= (1.0 - NEAR) * (double)target || lambda <= LEAST_LAMBDA
              : lambda >= MOST_LAMBDA)
         return 0;
     return next_lambda(b, (double)target, lambda, size);
@@ -166,7 +170,7 @@ int ted4_training_target(ted4_training *t, ted4_coded *c)
         snprintf(t->why, sizeof t->why, "%s", t->trainer->message.text);
     bad = bad || search(t, &start, c) != 0;
     ted4_snapshot_free(&start);
-    if (bad)
+    if (bad && !(t->stopped != 0 && fits(t, c)))
         ted4_coded_free(c);
     return bad ? -1 : 0;
 }

@@ -59,8 +59,8 @@ void ted4_coded_free(ted4_coded *c);
  * exceed request->target_size. *c is that file, or the smallest one if all exceed it. The search is
  * the same for the same scene, options and seed. A lambda at which no Gaussian is left bounds it.
  * It ends early, with a warning, if a trial fails for another reason after one has found a file
- * that fits; of several processes, all fail then. Returns 0, or -1 with t->why filled. See
- * target.c. */
+ * that fits; of several processes, all fail then. Returns 0, or -1 with t->why filled; *c is then
+ * empty, unless a signal has ended a search that has found a file that fits. See target.c. */
 int ted4_training_target(ted4_training *t, ted4_coded *c);
 
 /* ---- shared by training.c, target.c and look.c ---- */

@@ -33,6 +33,25 @@ expect rate_resumed 0 'c: going on from step 50' enc -o f.ted4 --checkpoint c --
 expect rate_written 0 'frames      4 at 6.5 per second' "$TED4_BUILD/ted4info" f.ted4
 expect device 0 'd.ted4: ' enc -o d.ted4 --log /dev/null
 
+# A search for a size that a signal ends keeps the file that fits: here that of the first trial,
+# which leaves half of the size unused; a search that has found none keeps none.
+size=$(wc -c <a.ted4)
+stop_search() { # OUT BYTES: in the second trial
+    rm -f said
+    "$TED4_BUILD/ted4enc" "$scene" $small --iterations 30,3000 -o "$1" --target-size "$2" 2>said &
+    search=$!
+    for i in $(seq 600); do grep -q '^ted4enc: lambda' said && break; sleep 0.1; done
+    kill -TERM $search
+    wait $search
+}
+stop_search found.ted4 $((2 * size)); status=$?
+[ $status = 143 ] && [ -s found.ted4 ] && grep -q 'found.ted4: the file of lambda' said &&
+    "$TED4_BUILD/ted4info" found.ted4 >info && ok search_found ||
+    fail search_found "status $status: $(cat said)"
+stop_search none.ted4 300; status=$?
+[ $status = 143 ] && [ ! -e none.ted4 ] && ok search_none ||
+    fail search_none "status $status: $(cat said)"
+
 # The log does not get what is meant for a closed standard error.
 enc -o s.ted4 --log s.log -v 2>&-
 all_json() { [ -s "$1" ] && [ "$(grep -c . "$1")" = "$(grep -c '^{.*}$' "$1")" ]; }
