@@ -4,7 +4,7 @@ import type { Gaussians } from "../src/index.js";
 
 /** A container for n Gaussians, 1 or more. PlayCanvas rounds scales to binary16 in world
  *  coordinates: where they are below 6e-5 or above 65504, scale the entity of the container by
- *  2 ** -info.exponent, and give the camera such a position and such clipping planes. */
+ *  2 ** -info.exponent, and scale the camera's position and clipping planes with it. */
 export function createContainer(device: GraphicsDevice, n: number): GSplatContainer;
 
 /** Puts Gaussians into a container that was made for as many of them. The component then needs

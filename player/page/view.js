@@ -20,8 +20,8 @@ export class View {
   #entity = null;
   #container = null;
   #projection = new Mat4();
-  // A world unit of the drawing, a power of two of the scene's units: PlayCanvas keeps scales in
-  // binary16, as world coordinates.
+  // In which the scene is drawn, in the file's units; a power of two. PlayCanvas keeps scales in
+  // binary16, as they are in its world.
   #unit = 1;
   #frames = 0; // still to be drawn
   #isSorted = true;
@@ -109,7 +109,7 @@ export class View {
     graphicsDevice.on("devicerestored", () => lost(false));
   }
 
-  // Nothing is shown until the next Gaussians. unit: the size of their scene, a power of two.
+  // Nothing is shown until the next Gaussians, which are drawn in that unit.
   clear(unit) {
     this.#entity?.destroy();
     this.#container?.destroy();

@@ -15,11 +15,14 @@
 #include "json_string.h"
 
 /* A standard stream that the caller has closed would lend its number to the next file, which would
- * then get what is meant for the stream. Writing to it still fails. */
+ * then get what is meant for the stream. Reading from it, or writing to it, still fails: each is
+ * opened for the other. A new file gets the lowest number that is free. */
 static void occupy_streams(void)
 {
-    int file;
+    int file = open("/dev/null", O_WRONLY);
 
+    if (file > STDIN_FILENO)
+        close(file);
     do
         file = open("/dev/null", O_RDONLY);
     while (file >= 0 && file <= STDERR_FILENO);

@@ -112,6 +112,8 @@ expect dangling_forced 0 "the scene is the same" "$bin/ted4edit" "$out/a.ted4" \
 ln -s elsewhere/x.png "$out/at/x.png"
 expect dangling_sheet 3 "x.png: exists; -f overwrites" "$bin/ted4eval" "$out/a.ted4" "$scene" \
     --sheet "$out/at/x.png"
+# A standard input that is closed is no file without bytes.
+expect closed_stdin 3 "Bad file descriptor" sh -c '"$0" - <&-' "$bin/ted4info"
 # A sheet that cannot be written is told of before pictures are compared; one that would take the
 # place of a picture of the same run goes beside it.
 expect sheet_nowhere 3 "ted4eval: $out/nowhere/x.png: cannot be written" "$bin/ted4eval" \
