@@ -264,7 +264,7 @@ static int step(ted4_training *t)
     ted4_trainer *tr = t->trainer;
     const uint64_t before = tr->iteration, rollbacks = tr->monitor.state.rollbacks;
     const size_t trials = tr->search.n_trials;
-    const ted4_poses_decision poses = tr->poses.decision;
+    const int on_trial = ted4_poses_on_trial(&tr->poses);
     const int closed = tr->closing.moving > 0;
 
     if (ted4_trainer_step(tr) != 0)
@@ -273,8 +273,7 @@ static int step(ted4_training *t)
      * earlier step (after a probe) or go back (a rollback). */
     if (tr->iteration <= before && start_over(t) != 0)
         return -1;
-    if (tr->poses.decision != poses && tr->poses.decision != TED4_POSES_ON_TRIAL &&
-        tell_poses(t) != 0)
+    if (on_trial && !ted4_poses_on_trial(&tr->poses) && tell_poses(t) != 0)
         return -1;
     if (!closed && tr->closing.moving > 0 &&
         ted4_run_log_closing(&t->log, tr, t->why, sizeof t->why) != 0)

@@ -1,6 +1,6 @@
 /* test_poses.c - train/pose/pose.c and train/step/pose_step.c: which pictures share a pose, the
- * motions of the whole scene, and whether refinement finds wrong poses and leaves right ones alone.
- * The gradient: test_step_grad.c.
+ * motions of the whole scene, and whether refinement finds wrong poses. That right ones are put
+ * back: test_pose_trial.c; the gradient: test_step_grad.c.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <math.h>
 #include <stdlib.h>
@@ -15,8 +15,8 @@
 #include "train/state/picture.h"
 #include "train/step/pose_step.h"
 
-/* The trial of refinement ends at DECIDED. */
-enum { STAGE1 = 2000, DECIDED = STAGE1 / 5, MOST = 8 };
+/* Poses move freely until FREE; the trial of refinement ends at DECIDED. */
+enum { STAGE1 = 2000, FREE = STAGE1 / 5, DECIDED = 3 * STAGE1 / 10, MOST = 8 };
 
 /* ---- cameras made by hand ---- */
 
@@ -319,43 +319,6 @@ static double error_of(const ted4_trainer *t, const ted4_dataset *truth)
     return sum;
 }
 
-/* Right poses are put back: from then on all views are those of the given cameras, and nothing
- * learns. */
-static void test_right(void **state)
-{
-    const ted4_train_options o = options();
-    ted4_trainer t;
-    ted4_view v, given;
-    float centre[3];
-    uint64_t steps = 0;
-
-    (void)state;
-    ball_begin(&t, &o, &balls, NULL);
-    assert_int_equal(t.poses.n, BALL_CAMERAS);
-    ball_train(&t, DECIDED);
-    assert_int_equal(t.poses.decision, TED4_POSES_ON_TRIAL);
-    for (size_t i = 0; i < t.poses.n; i++)
-        steps += t.poses.steps[i];
-    assert_int_equal(steps, DECIDED);
-    assert_true(fabsf(t.poses.value[0][0]) > 0);
-    assert_true(t.monitor.norm[TED4_TERM_POSE] > 0);
-    ball_train(&t, DECIDED + 10);
-    assert_int_equal(t.poses.decision, TED4_POSES_GIVEN);
-    assert_true(t.poses.moved > 0);
-    assert_true(t.poses.moved < 0.25);
-    assert_true(t.monitor.norm[TED4_TERM_POSE] == 0);
-    for (size_t i = 0; i < balls.n_pictures; i++) {
-        ted4_trainer_view(&t, &balls.pictures[i], &v, centre);
-        ted4_normalise_view(&t.layout.head, &balls.pictures[i].camera, &given, centre);
-        assert_memory_equal(v.R, given.R, sizeof v.R);
-        assert_memory_equal(v.t, given.t, sizeof v.t);
-    }
-    for (size_t i = 0; i < t.poses.n; i++)
-        for (int k = 0; k < TED4_POSE_VALUES; k++)
-            assert_true(t.poses.value[i][k] == 0);
-    ted4_trainer_finish(&t);
-}
-
 /* Wrong poses are found, pictures are rendered better than from the given ones, and the world stays
  * where it is. */
 static void test_wrong(void **state)
@@ -391,10 +354,12 @@ static void test_wrong(void **state)
     tiny_free(&f);
 }
 
-/* A training that is resumed on trial, and once more after the decision, equals one that is not. */
+/* A training that is resumed in each part of the trial, and once more after it, equals one that is
+ * not. */
 static void test_resumed(void **state)
 {
-    enum { FIRST = DECIDED / 2, SECOND = DECIDED + 100, LAST = DECIDED + 200 };
+    static const uint64_t ends[] = { FREE / 2, FREE + 100, DECIDED + 50, DECIDED + 150 };
+    enum { PARTS = sizeof ends / sizeof *ends };
     const ted4_train_options o = options();
     tiny_folder f;
     ted4_dataset d;
@@ -405,18 +370,20 @@ static void test_resumed(void **state)
     ball_load(&f, &d, FRAMES, 1);
     shake(&d);
     ball_begin(&whole, &o, &d, NULL);
-    ball_train(&whole, LAST);
-    for (int part = 0; part < 3; part++) {
+    ball_train(&whole, ends[PARTS - 1]);
+    for (int part = 0; part < PARTS; part++) {
         ball_begin(&t, &o, &d, NULL);
         if (part > 0)
             assert_int_equal(ted4_snapshot_restore(&t, &s), 0);
-        ball_train(&t, part == 0 ? FIRST : part == 1 ? SECOND : LAST);
-        if (part == 2)
+        ball_train(&t, ends[part]);
+        assert_int_equal(t.poses.decision, part == 0   ? TED4_POSES_ON_TRIAL
+                                           : part == 1 ? TED4_POSES_WITH_PRIOR
+                                                       : TED4_POSES_REFINED);
+        if (part == PARTS - 1)
             break;
         assert_int_equal(ted4_snapshot_take(&t, &s), 0);
         ted4_trainer_finish(&t);
     }
-    assert_int_equal(t.poses.decision, TED4_POSES_REFINED);
     assert_true(t.poses.moved == whole.poses.moved);
     assert_memory_equal(t.poses.value, whole.poses.value, t.poses.n * sizeof *t.poses.value);
     assert_memory_equal(t.poses.v, whole.poses.v, t.poses.n * sizeof *t.poses.v);
@@ -426,47 +393,6 @@ static void test_resumed(void **state)
     ted4_trainer_finish(&whole);
     ted4_dataset_free(&d);
     tiny_free(&f);
-}
-
-static void test_off(void **state)
-{
-    ted4_train_options o = options();
-    ted4_trainer t;
-
-    (void)state;
-    ball_set(&o, "poses=0");
-    ball_begin(&t, &o, &balls, NULL);
-    assert_int_equal(t.poses.n, 0);
-    ball_train(&t, DECIDED + 1);
-    assert_int_equal(t.poses.decision, TED4_POSES_ON_TRIAL);
-    assert_true(t.monitor.norm[TED4_TERM_POSE] == 0);
-    ted4_trainer_finish(&t);
-}
-
-/* All cameras turned aside by the same angle, which no motion of the scene can hide: its points
- * move by the focal length times the angle, and a little more beside the centre. */
-static void test_limit(void **state)
-{
-    static const float angle[] = { 0.01f, 0.015f };
-    const ted4_train_options o = options();
-
-    (void)state;
-    for (int wrong = 0; wrong < 2; wrong++) {
-        ted4_trainer t;
-
-        ball_begin(&t, &o, &balls, NULL);
-        t.iteration = DECIDED - 1;
-        for (size_t i = 0; i < t.poses.n; i++)
-            t.poses.value[i][1] = angle[wrong];
-        ted4_poses_decide(&t);
-        assert_int_equal(t.poses.decision, TED4_POSES_ON_TRIAL);
-        t.iteration = DECIDED;
-        ted4_poses_decide(&t);
-        assert_int_equal(t.poses.decision, wrong ? TED4_POSES_REFINED : TED4_POSES_GIVEN);
-        assert_true(t.poses.moved > BALL_FOCAL * (double)angle[wrong]);
-        assert_true(t.poses.moved < 1.15 * BALL_FOCAL * (double)angle[wrong]);
-        ted4_trainer_finish(&t);
-    }
 }
 
 /* Several pictures of one pose in one step: the gradients add up, and it is one step of Adam. */
@@ -518,10 +444,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_sharing), cmocka_unit_test(test_too_few),
-        cmocka_unit_test(test_gauge),   cmocka_unit_test(test_right),
-        cmocka_unit_test(test_wrong),   cmocka_unit_test(test_resumed),
-        cmocka_unit_test(test_off),     cmocka_unit_test(test_batch),
-        cmocka_unit_test(test_limit),
+        cmocka_unit_test(test_gauge),   cmocka_unit_test(test_wrong),
+        cmocka_unit_test(test_resumed), cmocka_unit_test(test_batch),
     };
 
     return cmocka_run_group_tests_name("poses", tests, set_up, tear_down);

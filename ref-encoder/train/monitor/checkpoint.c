@@ -15,7 +15,7 @@
 #include "train/model/header_from_options.h"
 
 #define MAGIC 0x34444554u /* "TED4" */
-enum { FORMAT = 16 };
+enum { FORMAT = 17 };
 
 typedef ted4_state_stream stream;
 

@@ -219,6 +219,11 @@ int ted4_poses_learnt(const ted4_poses *p)
     return p->n > 0 && p->decision != TED4_POSES_GIVEN;
 }
 
+int ted4_poses_on_trial(const ted4_poses *p)
+{
+    return p->decision == TED4_POSES_ON_TRIAL || p->decision == TED4_POSES_WITH_PRIOR;
+}
+
 void ted4_poses_put_back(ted4_poses *p)
 {
     const size_t size = p->n * sizeof *p->value;

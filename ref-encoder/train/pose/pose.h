@@ -20,8 +20,14 @@ enum { TED4_POSE_GAUGES = 7 };
 
 typedef float ted4_pose_motion[TED4_POSE_VALUES];
 
-/* Whether poses are refined: for a trial at first, then until the end of training or not at all. */
-typedef enum { TED4_POSES_ON_TRIAL, TED4_POSES_REFINED, TED4_POSES_GIVEN } ted4_poses_decision;
+/* Whether poses are refined: for a trial at first, the second part of which has a prior; then until
+ * the end of training or not at all. */
+typedef enum {
+    TED4_POSES_ON_TRIAL,
+    TED4_POSES_WITH_PRIOR,
+    TED4_POSES_REFINED,
+    TED4_POSES_GIVEN
+} ted4_poses_decision;
 
 /* The scene and all cameras could move together without changing any picture, but novel views are
  * asked for in the given world. So what the motions of all poses have in common with the motions of
@@ -53,6 +59,8 @@ void ted4_poses_finish(ted4_poses *p);
 
 /* Returns whether poses are being refined: on trial or for good. */
 int ted4_poses_learnt(const ted4_poses *p);
+/* Returns whether it is not decided yet. */
+int ted4_poses_on_trial(const ted4_poses *p);
 /* Returns to the given poses for good. */
 void ted4_poses_put_back(ted4_poses *p);
 /* Removes the motions of the whole scene from those of the poses. */

@@ -16,12 +16,25 @@
  * translation by as much of normalised space comes with it. */
 #define STEP_PIXELS 0.02
 
-/* The decision is made after this share of stage 1; by then, poses that are a pixel wrong have
- * moved by most of it if they have had a hundred steps. Measured: 0.04 to 0.17 pixels where poses
- * are right; 0.28 to 0.39 on dog and treadmill, where what moves takes few cameras along, and
- * refinement costs 0.5 to 0.9 dB; 0.8 where poses are wrong by 0.4 degrees. */
-#define TRIAL 0.2
-#define WORTH 0.5 /* pixels */
+/* The trial, in shares of stage 1: poses move freely at first, and then with a prior. By the end of
+ * the first part, poses that are a pixel wrong have moved by most of it if they have had a hundred
+ * steps. */
+#define FREE  0.2
+#define TRIAL 0.3
+
+/* The root mean square of the pixels that poses have to move freely. Measured: 0.04 to 0.19 where
+ * poses are right, and as much as they are wrong from 0.2 pixels on (0.2 and 0.4 cost 1.3 and 3 dB
+ * unless they are refined). A pose that only one picture determines follows what moves in it: 0.28
+ * to 0.39 on dog, where refinement costs 0.5 to 0.9 dB. */
+#define WORTH       0.2
+#define WORTH_ALONE 0.5
+/* The share of it that has to remain with the prior. Measured: poses that are wrong keep 0.84 to
+ * 0.94 of their motion, and those of treadmill, which are right, 0.08 to 0.14. */
+#define REMAINS     0.6
+/* Weight of the prior: the loss of a picture grows by half of this times the square of the pixels
+ * by which its pose turns the camera, and so for the translation. With half of it, 0.2 to 0.3 of
+ * the motion remains on treadmill; with 2.5 times as much, wrong poses keep 0.82. */
+#define PRIOR       0.02
 
 void ted4_pose_gradient(ted4_trainer *t, const ted4_picture *pic, const ted4_view *v,
                         const ted4_splats *s, ted4_pose_motion gradient)
@@ -48,6 +61,13 @@ void ted4_pose_add(ted4_trainer *t, const ted4_picture *pic, const ted4_pose_mot
     p->seen[pose] = 1;
 }
 
+/* Adds the gradient of the prior to that of a pose; focal: pixels per radian. */
+static void add_prior(ted4_poses *p, size_t pose, double focal)
+{
+    for (int k = 0; k < TED4_POSE_VALUES; k++)
+        p->gradient[pose][k] += (float)(PRIOR * focal * focal * (double)p->value[pose][k]);
+}
+
 void ted4_update_poses(ted4_trainer *t)
 {
     ted4_poses *p = &t->poses;
@@ -58,9 +78,12 @@ void ted4_update_poses(ted4_trainer *t)
             continue;
 
         const double norm = ted4_gradients_norm(p->gradient[i], TED4_POSE_VALUES);
-        const double rate = STEP_PIXELS / t->data->pictures[p->picture[i]].camera.fx;
+        const double focal = t->data->pictures[p->picture[i]].camera.fx;
+        const double rate = STEP_PIXELS / focal;
 
         square += norm * norm;
+        if (p->decision == TED4_POSES_WITH_PRIOR)
+            add_prior(p, i, focal);
         ted4_adam(p->value[i], p->m[i], p->v[i], p->gradient[i], TED4_POSE_VALUES,
                   (float)(rate * t->monitor.state.factor), ted4_adam_bias_make(++p->steps[i]));
         memset(p->gradient[i], 0, sizeof p->gradient[i]);
@@ -115,19 +138,40 @@ static double squares_moved(const ted4_trainer *t, size_t pose)
     return n > 0 ? sum / n : 0;
 }
 
+static double pixels_moved(const ted4_trainer *t)
+{
+    double sum = 0;
+
+    for (size_t i = 0; i < t->poses.n; i++)
+        sum += squares_moved(t, i);
+    return sqrt(sum / (double)t->poses.n);
+}
+
+/* Returns whether something may move while most poses have one picture only. */
+static int poses_alone(const ted4_trainer *t)
+{
+    size_t pictures = 0;
+
+    for (size_t i = 0; i < t->data->n_pictures; i++)
+        pictures += t->poses.of[i] < t->poses.n;
+    return t->data->n_frames > 1 && pictures < 2 * t->poses.n;
+}
+
 void ted4_poses_decide(ted4_trainer *t)
 {
     ted4_poses *p = &t->poses;
-    double sum = 0;
+    const int prior = p->decision == TED4_POSES_WITH_PRIOR;
+    const double share = prior ? TRIAL : FREE;
 
-    if (p->n == 0 || p->decision != TED4_POSES_ON_TRIAL ||
-        ted4_stage_position(t) < (uint64_t)(TRIAL * (double)t->opt.stage1))
+    if (p->n == 0 || !ted4_poses_on_trial(p) ||
+        ted4_stage_position(t) < (uint64_t)(share * (double)t->opt.stage1))
         return;
-    for (size_t i = 0; i < p->n; i++)
-        sum += squares_moved(t, i);
-    p->moved = sqrt(sum / (double)p->n);
-    if (p->moved < WORTH)
+
+    const double worth = poses_alone(t) ? WORTH_ALONE : WORTH;
+
+    p->moved = pixels_moved(t);
+    if (p->moved < (prior ? REMAINS * worth : worth))
         ted4_poses_put_back(p);
     else
-        p->decision = TED4_POSES_REFINED;
+        p->decision = prior ? TED4_POSES_REFINED : TED4_POSES_WITH_PRIOR;
 }

@@ -18,10 +18,15 @@ void ted4_pose_add(ted4_trainer *t, const ted4_picture *pic, const ted4_pose_mot
  * is. Sets the norm of these gradients for the monitor. */
 void ted4_update_poses(ted4_trainer *t);
 
-/* Ends the trial of refinement, if it is due: after a fifth of stage 1. Given poses that are right
- * only follow the noise of training, and cost quality if they do; so they are put back if what is
- * seen has moved by less than half a pixel. Otherwise refinement goes on until the end.
- * t->poses.decision and t->poses.moved receive the result. */
+/* Goes on with the trial of refinement, if its next part is due. Given poses that are right only
+ * follow the noise of training, and cost quality if they do; so they are put back after a fifth of
+ * stage 1 if what is seen has moved by less than 0.2 pixels, or by less than 0.5 if each picture
+ * has a pose of its own and things may move. Where hardly two cameras see the same content, poses
+ * drift farther while it is learnt, and the content with them. Pictures do not tell such a drift
+ * from the given poses, but tell wrong poses from right ones. So from then on a prior pulls towards
+ * the given poses, and they are put back after three tenths of stage 1 unless 0.6 of that much
+ * remains. Otherwise refinement goes on without the prior until the end. t->poses.decision and
+ * t->poses.moved receive the result. */
 void ted4_poses_decide(ted4_trainer *t);
 
 #endif
