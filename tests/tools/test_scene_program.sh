@@ -52,6 +52,18 @@ for layout in blender nerfstudio colmap colmap-text hypernerf calibration llff; 
             "$out/$layout"
     done
 done
+# The first turn is that of a training camera.
+for layout in blender nerfstudio hypernerf; do
+    for split in "" "--split val" "--split times --hold 4"; do
+        case $layout:$split in hypernerf:*val) continue ;; esac
+        # shellcheck disable=SC2086 # $split is a list of options
+        "$TED4_BUILD/ted4scene" relay -o "$out/turns" --frames 1 --size 16x16 -j 1 \
+            --layout $layout -f $split
+        expect "no test turns $layout $split" 0 "pictures    1 train, 0 test" \
+            "$TED4_BUILD/ted4enc" --check "$out/turns"
+        rm -r "$out/turns"
+    done
+done
 
 # A video of which only the beginning was written is none, whatever the status of ffmpeg.
 mkdir "$out/bin"

@@ -511,15 +511,25 @@ static int has_points(const ted4_ray_options *o)
     return o->ways.points != RAY_NO_POINTS;
 }
 
-/* A list without pictures would be an error where it is read. */
+/* Test cameras may have no turn, and no time to hold out, among few frames. A list without pictures
+ * would be an error where it is read. */
+static int has_held_pictures(const ted4_ray_options *o)
+{
+    for (int i = 0; i < o->n_test * o->n_frames; i++) {
+        if (ted4_ray_is_taken(o, o->n_train + i / o->n_frames, i % o->n_frames))
+            return 1;
+    }
+    return 0;
+}
+
 static int has_test(const ted4_ray_options *o)
 {
-    return o->n_test > 0 && (o->ways.split == RAY_TEST_FILE || o->ways.split == RAY_OTHER_TIMES);
+    return o->ways.split != RAY_VAL_FILE && has_held_pictures(o);
 }
 
 static int has_val(const ted4_ray_options *o)
 {
-    return o->n_test > 0 && o->ways.split == RAY_VAL_FILE;
+    return o->ways.split == RAY_VAL_FILE && has_held_pictures(o);
 }
 
 /* The file by which a folder is recognised as a scene comes last. */
