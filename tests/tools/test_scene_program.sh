@@ -39,6 +39,11 @@ wrong --split x "val, train-only or times"
 wrong --missing -1 "a whole number from 0 to 1000000"
 expect frames_of_turns 3 "ted4scene: --frames: not with --turns, where each camera has a time" \
     "$TED4_BUILD/ted4scene" toys -o "$out/none" --turns --frames 4
+for kinds in "--png 16 --jpeg baseline" "--jpeg progressive --png grey"; do
+    # shellcheck disable=SC2086 # $kinds is a list of options
+    expect "$kinds" 3 "ted4scene: --jpeg: not with --png: all pictures are of one kind" \
+        "$TED4_BUILD/ted4scene" still -o "$out/none" --size 16x16 $kinds
+done
 if [ ! -e "$out/none" ]; then ok nothing_made; else fail nothing_made "a folder"; fi
 
 # No empty list is written. In Neu3D the first camera is held out, even if it is the only one.

@@ -261,9 +261,13 @@ static int seed_of(const char *text, uint32_t *seed)
 
 static int way(command *c, int index, const char *text)
 {
-    if (ted4_scene_way(index, text, &c->set.ways) == 0)
-        return EXIT_FINE;
-    return bad_value(OPT_WAYS + index, text, ted4_scene_way_expected(index));
+    const int file = c->set.ways.file;
+
+    if (ted4_scene_way(index, text, &c->set.ways) != 0)
+        return bad_value(OPT_WAYS + index, text, ted4_scene_way_expected(index));
+    if (file != RAY_PNG && (file >= RAY_JPEG) != (c->set.ways.file >= RAY_JPEG))
+        return complain("--jpeg", "not with --png: all pictures are of one kind");
+    return EXIT_FINE;
 }
 
 static int set_option(command *c, int index, const char *text)
