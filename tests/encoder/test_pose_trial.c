@@ -123,7 +123,7 @@ static void test_limits(void **state)
     for (int kind = 0; kind < KINDS; kind++)
         for (int wrong = 0; wrong < 3; wrong++) {
             const double freely = (wrong == 0 ? 0.85 : 1.01) * limit[kind];
-            const double remains = (wrong == 1 ? 0.5 : 0.61) * limit[kind];
+            const double remains = (wrong == 1 ? 0.7 : 0.8) * freely;
             tiny_folder f;
             ted4_dataset d;
             ted4_trainer t;

@@ -45,7 +45,8 @@ typedef struct {
     double *gauge;
     int n_gauges;
     double unit; /* length of one unit of normalised space in the world */
-    /* The decision, and by how many pixels poses had moved then (pose_step.h). */
+    /* The decision, and by how many pixels poses had moved when it was last looked at
+     * (pose_step.h). */
     ted4_poses_decision decision;
     double moved;
 } ted4_poses;
