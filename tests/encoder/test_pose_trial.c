@@ -112,6 +112,24 @@ static void check_moved(const ted4_trainer *t, double pixels)
     assert_true(t->poses.moved < 1.15 * pixels);
 }
 
+/* Of poses that have moved far, half a pixel suffices. */
+static void test_far(void **state)
+{
+    const ted4_train_options o = options();
+
+    (void)state;
+    for (int wrong = 0; wrong < 2; wrong++) {
+        ted4_trainer t;
+
+        ball_begin(&t, &o, &balls, NULL);
+        decide(&t, 1.0, FREE);
+        assert_int_equal(t.poses.decision, TED4_POSES_WITH_PRIOR);
+        decide(&t, wrong ? 0.51 : 0.43, DECIDED);
+        assert_int_equal(t.poses.decision, wrong ? TED4_POSES_REFINED : TED4_POSES_GIVEN);
+        ted4_trainer_finish(&t);
+    }
+}
+
 /* Poses have to move farther if each belongs to one picture in which things may move, and most of
  * it has to remain with the prior. */
 static void test_limits(void **state)
@@ -184,10 +202,8 @@ static void test_prior(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_right),
-        cmocka_unit_test(test_off),
-        cmocka_unit_test(test_limits),
-        cmocka_unit_test(test_prior),
+        cmocka_unit_test(test_right), cmocka_unit_test(test_off),   cmocka_unit_test(test_limits),
+        cmocka_unit_test(test_far),   cmocka_unit_test(test_prior),
     };
 
     return cmocka_run_group_tests_name("pose_trial", tests, set_up, tear_down);

@@ -25,8 +25,8 @@ void ted4_update_poses(ted4_trainer *t);
  * drift farther while it is learnt, and the content with them. Pictures do not tell such a drift
  * from the given poses, but tell wrong poses from right ones. So from then on a prior pulls towards
  * the given poses, and they are put back after three tenths of stage 1 unless three quarters of
- * that motion remain. Otherwise refinement goes on without the prior until the end.
- * t->poses.decision and t->poses.moved receive the result. */
+ * that motion remain, or half a pixel. Otherwise refinement goes on without the prior until the
+ * end. t->poses.decision and t->poses.moved receive the result. */
 void ted4_poses_decide(ted4_trainer *t);
 
 #endif
