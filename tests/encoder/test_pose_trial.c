@@ -4,29 +4,17 @@
 #include <math.h>
 
 #include "ball_group.h"
+#include "pose_training.h"
 #include "test.h"
 #include "train/model/normalise.h"
 #include "train/state/picture.h"
 #include "train/step/pose_step.h"
 
-/* Poses move freely until FREE; the trial ends at DECIDED. */
-enum { STAGE1 = 2000, FREE = STAGE1 / 5, DECIDED = 3 * STAGE1 / 10 };
-
-static ted4_train_options options(void)
-{
-    ted4_train_options o = ball_options();
-
-    ball_set(&o, "stage1=2000");
-    ball_set(&o, "probe=0");
-    ball_set(&o, "dropout=0");
-    return o;
-}
-
 /* Right poses are put back: from then on all views are those of the given cameras, and nothing
  * learns. */
 static void test_right(void **state)
 {
-    const ted4_train_options o = options();
+    const ted4_train_options o = pose_options();
     ted4_trainer t;
     ted4_view v, given;
     float centre[3];
@@ -61,7 +49,7 @@ static void test_right(void **state)
 
 static void test_off(void **state)
 {
-    ted4_train_options o = options();
+    ted4_train_options o = pose_options();
     ted4_trainer t;
 
     (void)state;
@@ -97,13 +85,15 @@ static size_t training_pictures(const ted4_dataset *d)
 }
 
 /* Turns all cameras aside by the same angle, which no motion of the scene can hide: its points move
- * by the focal length times the angle, and a little more beside the centre. Then decides. */
-static void decide(ted4_trainer *t, double pixels, uint64_t step)
+ * by the focal length times the angle, and a little more beside the centre. Then decides, and
+ * expects that decision. */
+static void decide(ted4_trainer *t, double pixels, uint64_t step, ted4_poses_decision want)
 {
     for (size_t i = 0; i < t->poses.n; i++)
         t->poses.value[i][1] = (float)(pixels / BALL_FOCAL);
     t->iteration = step;
     ted4_poses_decide(t);
+    assert_int_equal(t->poses.decision, want);
 }
 
 static void check_moved(const ted4_trainer *t, double pixels)
@@ -115,17 +105,15 @@ static void check_moved(const ted4_trainer *t, double pixels)
 /* Of poses that have moved far, half a pixel suffices. */
 static void test_far(void **state)
 {
-    const ted4_train_options o = options();
+    const ted4_train_options o = pose_options();
 
     (void)state;
     for (int wrong = 0; wrong < 2; wrong++) {
         ted4_trainer t;
 
         ball_begin(&t, &o, &balls, NULL);
-        decide(&t, 1.0, FREE);
-        assert_int_equal(t.poses.decision, TED4_POSES_WITH_PRIOR);
-        decide(&t, wrong ? 0.51 : 0.43, DECIDED);
-        assert_int_equal(t.poses.decision, wrong ? TED4_POSES_REFINED : TED4_POSES_GIVEN);
+        decide(&t, 1.0, FREE, TED4_POSES_WITH_PRIOR);
+        decide(&t, wrong ? 0.51 : 0.43, DECIDED, wrong ? TED4_POSES_REFINED : TED4_POSES_GIVEN);
         ted4_trainer_finish(&t);
     }
 }
@@ -135,7 +123,7 @@ static void test_far(void **state)
 static void test_limits(void **state)
 {
     static const double limit[KINDS] = { 0.2, 0.5, 0.2 };
-    const ted4_train_options o = options();
+    const ted4_train_options o = pose_options();
 
     (void)state;
     for (int kind = 0; kind < KINDS; kind++)
@@ -149,20 +137,14 @@ static void test_limits(void **state)
             load_kind(kind, &f, &d);
             ball_begin(&t, &o, &d, NULL);
             assert_int_equal(t.poses.n, kind == MOVING ? training_pictures(&d) : BALL_CAMERAS);
-            decide(&t, freely, FREE - 1);
-            assert_int_equal(t.poses.decision, TED4_POSES_ON_TRIAL);
-            decide(&t, freely, FREE);
+            decide(&t, freely, FREE - 1, TED4_POSES_ON_TRIAL);
+            decide(&t, freely, FREE, wrong > 0 ? TED4_POSES_WITH_PRIOR : TED4_POSES_GIVEN);
             check_moved(&t, freely);
-            assert_int_equal(t.poses.decision,
-                             wrong > 0 ? TED4_POSES_WITH_PRIOR : TED4_POSES_GIVEN);
             assert_int_equal(ted4_poses_on_trial(&t.poses), wrong > 0);
             if (wrong > 0) {
-                decide(&t, remains, DECIDED - 1);
-                assert_int_equal(t.poses.decision, TED4_POSES_WITH_PRIOR);
-                decide(&t, remains, DECIDED);
+                decide(&t, remains, DECIDED - 1, TED4_POSES_WITH_PRIOR);
+                decide(&t, remains, DECIDED, wrong > 1 ? TED4_POSES_REFINED : TED4_POSES_GIVEN);
                 check_moved(&t, remains);
-                assert_int_equal(t.poses.decision,
-                                 wrong > 1 ? TED4_POSES_REFINED : TED4_POSES_GIVEN);
             }
             ted4_trainer_finish(&t);
             ted4_dataset_free(&d);
@@ -174,7 +156,7 @@ static void test_limits(void **state)
  * trial only, towards the given poses, twice as much from twice as far. */
 static void test_prior(void **state)
 {
-    const ted4_train_options o = options();
+    const ted4_train_options o = pose_options();
 
     (void)state;
     for (int decision = TED4_POSES_ON_TRIAL; decision <= TED4_POSES_REFINED; decision++) {

@@ -8,6 +8,7 @@
 
 #include "ball_group.h"
 #include "pose_ref.h"
+#include "pose_training.h"
 #include "random_source.h"
 #include "test.h"
 #include "train/model/normalise.h"
@@ -15,8 +16,7 @@
 #include "train/state/picture.h"
 #include "train/step/pose_step.h"
 
-/* Poses move freely until FREE; the trial of refinement ends at DECIDED. */
-enum { STAGE1 = 2000, FREE = STAGE1 / 5, DECIDED = 3 * STAGE1 / 10, MOST = 8 };
+enum { MOST = 8 };
 
 /* ---- cameras made by hand ---- */
 
@@ -260,16 +260,6 @@ static void test_gauge(void **state)
 
 /* ---- trainings ---- */
 
-static ted4_train_options options(void)
-{
-    ted4_train_options o = ball_options();
-
-    ball_set(&o, "stage1=2000");
-    ball_set(&o, "probe=0");
-    ball_set(&o, "dropout=0");
-    return o;
-}
-
 /* Turns every camera by about a pixel, each its own way. */
 static void shake(ted4_dataset *d)
 {
@@ -323,7 +313,7 @@ static double error_of(const ted4_trainer *t, const ted4_dataset *truth)
  * where it is. */
 static void test_wrong(void **state)
 {
-    ted4_train_options o = options();
+    ted4_train_options o = pose_options();
     tiny_folder f;
     ted4_dataset d;
     ted4_trainer t, given;
@@ -360,7 +350,7 @@ static void test_resumed(void **state)
 {
     static const uint64_t ends[] = { FREE / 2, FREE + 100, DECIDED + 50, DECIDED + 150 };
     enum { PARTS = sizeof ends / sizeof *ends };
-    const ted4_train_options o = options();
+    const ted4_train_options o = pose_options();
     tiny_folder f;
     ted4_dataset d;
     ted4_trainer whole, t;
@@ -398,7 +388,7 @@ static void test_resumed(void **state)
 /* Several pictures of one pose in one step: the gradients add up, and it is one step of Adam. */
 static void test_batch(void **state)
 {
-    const ted4_train_options o = options();
+    const ted4_train_options o = pose_options();
     ted4_trainer t;
     ted4_pose_motion once;
 

@@ -22,7 +22,7 @@
 #define FREE  0.2
 #define TRIAL 0.3
 
-/* The root mean square of the pixels that poses have to move freely. Measured: 0.04 to 0.24 where
+/* The root mean square of the pixels that poses have to move freely. Measured: 0.03 to 0.30 where
  * poses are right, to 0.5 on treadmill and with models that cannot move; and as much as they are
  * wrong from 0.2 pixels on (0.2 and 0.4 cost 1.3 and 3 dB unless they are refined). A pose that
  * only one picture determines follows what moves in it: 0.28 to 0.47 on dog, where refinement costs
