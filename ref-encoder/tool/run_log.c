@@ -45,6 +45,15 @@ static int is_regular(int file)
     return fstat(file, &s) == 0 && S_ISREG(s.st_mode);
 }
 
+/* Returns whether n bytes without a line end may be all that a crash has left of a log: they begin
+ * as its first line does. */
+static int is_cut_short(const char *line, size_t n)
+{
+    static const char begin[] = "{\"step\":";
+
+    return strncmp(line, begin, n < sizeof begin - 1 ? n : sizeof begin - 1) == 0;
+}
+
 /* Returns where the lines from byte end on reach a later step or number of rollbacks, or -1 if one
  * is not of ted4enc. A last line without a line end does not count. Sets *cpu to the cpu_seconds of
  * the last counted line that has them. */
@@ -55,7 +64,11 @@ static off_t find_end(FILE *f, off_t end, uint64_t step, uint64_t rollbacks, dou
     ssize_t n;
     unsigned long long at, count;
 
-    while (end >= 0 && (n = getline(&line, &capacity, f)) > 0 && line[n - 1] == '\n') {
+    while (end >= 0 && (n = getline(&line, &capacity, f)) > 0) {
+        if (line[n - 1] != '\n') {
+            end = end > 0 || is_cut_short(line, (size_t)n) ? end : -1;
+            break;
+        }
         if (sscanf(line, "{\"step\":%llu,", &at) != 1)
             end = -1;
         else if (at > step ||

@@ -446,19 +446,22 @@ static void test_diverged(void **state)
     end_idle(&idle);
 }
 
-/* A file that is not a log is not changed. */
+/* A file that is not a log is not changed, whether or not its last line has an end. */
 static void test_wrong_log(void **state)
 {
+    static const char *const wrong[] = { "dear diary\n", "dear diary", "{\"frames\": []}" };
     char text[64];
 
     (void)state;
     begin_test();
-    tiny_text(&folder, "out/l", "dear diary\n");
-    assert_int_equal(run("-o out/x.ted4 --log out/l --checkpoint out/c --resume", 0), 3);
-    expect_words("out/l: there, but not a log of ted4enc");
-    read_text("out/l", text, sizeof text);
-    assert_string_equal(text, "dear diary\n");
-    gone("out/l");
+    for (size_t i = 0; i < sizeof wrong / sizeof wrong[0]; i++) {
+        tiny_text(&folder, "out/l", wrong[i]);
+        assert_int_equal(run("-o out/x.ted4 --log out/l --checkpoint out/c --resume", 0), 3);
+        expect_words("out/l: there, but not a log of ted4enc");
+        read_text("out/l", text, sizeof text);
+        assert_string_equal(text, wrong[i]);
+        gone("out/l");
+    }
     expect_files("");
 }
 
