@@ -80,7 +80,9 @@ int ted4_video_out_open(ted4_video_out *v, const char *path, int width, int heig
     v->messages = tmpfile();
     if (v->messages != NULL && start(v, size, rate) == 0)
         return 0;
-    snprintf(why, why_size, "%s", strerror(errno));
+    snprintf(why, why_size, "%s%s",
+             v->messages == NULL ? "no temporary file for the messages of ffmpeg: " : "",
+             strerror(errno));
     if (v->messages != NULL)
         fclose(v->messages);
     ted4_output_cancel(&v->file);

@@ -53,6 +53,10 @@ expect mixed 3 'the cameras differ in size' "$dec" "$vector" --render "$out/b.mp
     --camera "$out/mixed.json"
 expect percent 3 'bad value b%d.mp4; expected a name without %' "$dec" "$vector" --render b%d.mp4 \
     --camera "$out/two.json"
+# With four files at most, the video is the last one that can be opened.
+expect no_messages 3 'b.mp4: no temporary file for the messages of ffmpeg: Too many open files' \
+    sh -c 'ulimit -n 4; exec "$@"' sh "$dec" "$vector" --render "$out/b.mp4" \
+    --camera "$out/two.json" -j 1
 FAIL=1
 expect fails 3 'b.mp4: ffmpeg failed: Unknown encoder' "$dec" "$vector" --render "$out/b.mp4" \
     --camera "$out/two.json"
