@@ -459,14 +459,21 @@ static void sum_up(conf_run_result *r)
                 r->count[CONF_FAIL] + r->count[CONF_NO_ANSWER] + r->count[CONF_MISSING] == 0;
 }
 
-/* Ends the program if a report cannot be written, before a run of minutes would be in vain. */
+/* Ends the program if a report cannot be written, or would replace another one, before a run of
+ * minutes would be in vain. */
 static void try_reports(const conf_run_options *o)
 {
+    static const char *const option[] = { "--json", "--junit", "--html" };
     const char *const path[] = { o->json, o->junit, o->html };
 
-    for (size_t i = 0; i < sizeof path / sizeof *path; i++)
-        if (path[i] != NULL)
-            conf_write_try(path[i]);
+    for (size_t i = 0; i < sizeof path / sizeof *path; i++) {
+        if (path[i] == NULL)
+            continue;
+        for (size_t j = 0; j < i; j++)
+            if (path[j] != NULL && strcmp(path[i], path[j]) == 0)
+                conf_die("%s and %s: both are %s", option[j], option[i], path[i]);
+        conf_write_try(path[i]);
+    }
 }
 
 static void write_reports(const conf_run_result *r)

@@ -1,6 +1,7 @@
 #!/bin/sh
-# test_conf_folder.sh - ted4conf run and encode leave no folder behind, however they end. Prints
-# lines as a cmocka program does; run by `make test` from the project's root.
+# test_conf_folder.sh - ted4conf run and encode leave no folder behind, however they end, and refuse
+# two reports of one name. Prints lines as a cmocka program does; run by `make test` from the
+# project's root.
 # SPDX-License-Identifier: BSD-2-Clause
 set -u
 . tests/support/speak.sh
@@ -48,6 +49,10 @@ for one in TERM:143 HUP:129 KILL:137; do
 done
 ends encode TERM 143 "$conf" encode -e "echo half >\"$TMPDIR\"/ted4conf-*/out.ted4;
     echo \$\$ >'$out/asked'; exec sleep 600;" "$out"
+
+# Reports of one name would replace each other.
+expect two_reports 3 "--json and --html: both are $out/report" "$conf" run -q $few \
+    -d "$TED4_BUILD/ted4dec" --json "$out/report" --junit "$out/junit" --html "$out/report"
 
 # A decoder that leaves files of its own.
 litter="sh -c '[ \$1 != --ted4-run ] || : >\"\${2%/*}/litter\"
