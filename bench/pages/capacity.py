@@ -284,9 +284,9 @@ def sections(runs, page, costs, charts):
         the file divided by the number of values of all anchors in the scene's `whole` run, so that
         a bit weighs the same in every run of a scene. *For time* counts the bytes of the bank, of
         temporal features and of activations, and the networks' share. *CPU s* are seconds of
-        training, trials included; those of *auto* and *whole*, which bar 4 compares, were measured
-        on one machine, and times of other settings on one that is three times as fast. *Trials* are
-        the steps of those trials that train. *Bits per weight* are those of the networks of
+        training, trials included; of each scene, one machine trained *auto* and *whole*, which bar
+        4 compares, and other settings ran on machines up to three times as fast. *Trials* are the
+        steps of those trials that train. *Bits per weight* are those of the networks of
         reconstruction and of the bank in the file. *Model* shows K/F/d, rows x width of the bank,
         widths of F_deform/heads, hyperprior/slices, view. Scenes *things0* to *things8* have that
         many moving objects; *long2* and *long4* are *things4* for twice and four times as long, and
