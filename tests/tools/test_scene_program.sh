@@ -75,13 +75,26 @@ mkdir "$out/bin"
 cat >"$out/bin/ffmpeg" <<'END'
 #!/bin/sh
 for last; do :; done
-printf '\000\000\000\010ftyp' >"$last"
+printf '\000\000\000\010ftyp' >"${last#file:}"
 END
 chmod +x "$out/bin/ffmpeg"
 expect half_video 3 'cam02.mp4: the program ffmpeg cannot make it' env PATH="$out/bin:$PATH" \
     "$TED4_BUILD/ted4scene" still -o "$out/half" --size 16x16 --layout neu3d --video
 if [ -z "$(find "$out/half" -name '*.mp4*' -o -name '*.part')" ]; then ok half_video_left
 else fail half_video_left "a file of ffmpeg stayed"; fi
+# No part of the folder's name is the number of a picture, or a protocol, for ffmpeg.
+cat >"$out/bin/ffmpeg" <<'END'
+#!/bin/sh
+for last; do :; done
+echo "$*" >"${last#file:}.words"
+printf '\000\000\000\010ftyp\000\000\000\011moovM\000\000\000\011mdatM' >"${last#file:}"
+END
+bin=$(cd "$TED4_BUILD" && pwd)
+(cd "$out" && PATH="$out/bin:$PATH" "$bin/ted4scene" still -o "50%d a:b" --size 16x16 \
+    --cameras 1 --layout neu3d --video)
+cat "$out/50%d a:b/"cam00.*.words >"$out/words"
+check names "$out/words" "-i file:50%%d a:b/cam00/images/%04d.png " " file:50%d a:b/cam00."
+if [ -f "$out/50%d a:b/cam00.mp4" ]; then ok named_video; else fail named_video "no video"; fi
 
 # A run is stopped as soon as its first picture has a name.
 for kind in "--background room --jpeg baseline" "--background transparent --png 16" \

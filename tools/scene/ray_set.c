@@ -227,15 +227,37 @@ static int make_picture_folders(const ted4_ray_options *o, const char *folder, t
 
 /* ---- videos: lossless, instead of folders of frames ---- */
 
+/* Makes the name by which ffmpeg finds the pictures of a camera. In the name of a folder, a % is
+ * written twice, as it would begin a number; and no name is taken for a protocol. Returns 0, or -1
+ * if it is too long. */
+static int name_pictures(char name[MAX_PATH], const char *folder, const char *camera)
+{
+    char doubled[MAX_PATH];
+    size_t n = 0;
+
+    for (const char *c = folder; *c != '\0'; c++) {
+        if (n + 2 >= sizeof doubled)
+            return -1;
+        doubled[n++] = *c;
+        if (*c == '%')
+            doubled[n++] = '%';
+    }
+    doubled[n] = '\0';
+    n = (size_t)snprintf(name, MAX_PATH, "file:%s/%s/images/%%04d.png", doubled, camera);
+    return n < MAX_PATH ? 0 : -1;
+}
+
 /* Runs ffmpeg, which makes the file to of the pictures input. Returns 0, or -1. */
 static int run_ffmpeg(const char *input, const char *to)
 {
+    char output[MAX_PATH + 8];
     const pid_t child = fork();
     int status = -1;
 
     if (child == 0) {
+        snprintf(output, sizeof output, "file:%s", to);
         execlp("ffmpeg", "ffmpeg", "-nostdin", "-v", "error", "-xerror", "-y", "-framerate", "30",
-               "-i", input, "-c:v", "png", "-f", "mp4", to, (char *)NULL);
+               "-i", input, "-c:v", "png", "-f", "mp4", output, (char *)NULL);
         _exit(127);
     }
     if (child < 0)
@@ -250,7 +272,7 @@ static int encode(const char *folder, const char *camera, ted4_ray_message *m)
 {
     char input[MAX_PATH], output[MAX_PATH], temporary[MAX_PATH];
 
-    if (snprintf(input, sizeof input, "%s/%s/images/%%04d.png", folder, camera) >= MAX_PATH ||
+    if (name_pictures(input, folder, camera) != 0 ||
         snprintf(output, sizeof output, "%s/%s.mp4", folder, camera) >= MAX_PATH ||
         snprintf(temporary, sizeof temporary, "%s/%s.%ld.part", folder, camera, (long)getpid()) >=
             MAX_PATH)
