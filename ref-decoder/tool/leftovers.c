@@ -16,18 +16,30 @@ enum { N_SIGNALS = (int)(sizeof signals / sizeof signals[0]) };
 static struct {
     _Atomic(const char *) path; /* NULL: the slot is free */
     atomic_int writer;
+    void (*_Atomic empty)(const char *); /* NULL: path is a file */
 } slots[TED4_LEFTOVERS];
 
-void ted4_leftovers_add(const char *path, pid_t writer)
+static void add(const char *path, pid_t writer, void (*empty)(const char *))
 {
     for (int i = 0; i < TED4_LEFTOVERS; i++) {
         const char *none = NULL;
 
         if (atomic_compare_exchange_strong(&slots[i].path, &none, path)) {
+            atomic_store(&slots[i].empty, empty);
             atomic_store(&slots[i].writer, (int)writer);
             return;
         }
     }
+}
+
+void ted4_leftovers_add(const char *path, pid_t writer)
+{
+    add(path, writer, NULL);
+}
+
+void ted4_leftovers_add_folder(const char *path, void (*empty)(const char *path))
+{
+    add(path, 0, empty);
 }
 
 void ted4_leftovers_written(const char *path, pid_t writer)
@@ -42,6 +54,7 @@ void ted4_leftovers_forget(const char *path)
     for (int i = 0; i < TED4_LEFTOVERS; i++) {
         if (atomic_load(&slots[i].path) == path) {
             atomic_store(&slots[i].writer, 0);
+            atomic_store(&slots[i].empty, NULL);
             atomic_store(&slots[i].path, NULL);
         }
     }
@@ -52,13 +65,17 @@ void ted4_leftovers_remove(void)
     for (int i = 0; i < TED4_LEFTOVERS; i++) {
         const char *path = atomic_load(&slots[i].path);
         const pid_t writer = atomic_load(&slots[i].writer);
+        void (*const empty)(const char *) = atomic_load(&slots[i].empty);
 
         if (path == NULL)
             continue;
         /* It could still make the file after its removal. */
         if (writer > 0 && kill(writer, SIGKILL) == 0)
             waitpid(writer, NULL, 0);
-        unlink(path);
+        if (empty != NULL)
+            empty(path);
+        else
+            unlink(path);
     }
 }
 

@@ -1,12 +1,13 @@
-/* leftovers.h - files that are not complete yet, which a signal that ends the program removes.
+/* leftovers.h - files and folders that are not complete yet, which a signal that ends the program
+ * removes.
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_LEFTOVERS_H
 #define TED4_LEFTOVERS_H
 
 #include <sys/types.h>
 
-/* As many files may be unfinished at a time; more than these stay where a signal ends the
- * program. */
+/* As many files and folders may be unfinished at a time; more than these stay where a signal ends
+ * the program. */
 enum { TED4_LEFTOVERS = 8 };
 
 /* From now on SIGINT, SIGTERM, SIGHUP and SIGPIPE remove what was added, and then end the program
@@ -17,12 +18,15 @@ void ted4_leftovers_watch(void);
  * the child process that writes the file and is ended with this one, or 0. May be called from any
  * thread. */
 void ted4_leftovers_add(const char *path, pid_t writer);
-/* Changes the writer of a file: to a child process that has begun, or to 0 before the number of one
- * that has ended can be another's. path: the pointer that was added. */
+/* The same for a folder. empty: removes it with the files that may be in it; a signal handler calls
+ * it, so that it may use only functions that are safe there. */
+void ted4_leftovers_add_folder(const char *path, void (*empty)(const char *path));
+/* Changes the writer of a file or folder: to a child process that has begun, or to 0 before the
+ * number of one that has ended can be another's. path: the pointer that was added. */
 void ted4_leftovers_written(const char *path, pid_t writer);
-/* The file has its name, or is gone. path: the pointer that was added. */
+/* The file or folder has its name, or is gone. path: the pointer that was added. */
 void ted4_leftovers_forget(const char *path);
-/* Ends the writers and removes the files. For signal handlers. */
+/* Ends the writers and removes the files and folders. For signal handlers. */
 void ted4_leftovers_remove(void);
 
 #endif

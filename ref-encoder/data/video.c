@@ -1,7 +1,7 @@
 /* video.c - see video.h. Frames are unpacked into a folder with a unique name, which gets its final
  * name when it is complete. So a folder with the final name always holds every frame, and programs
  * that unpack the same video at the same time do not disturb one another. What a killed program has
- * left is removed when the next video is unpacked.
+ * left is removed when the next video is unpacked; a signal that can be caught leaves nothing.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "data/video.h"
 
@@ -24,8 +24,8 @@
 #include "data/raw_scene.h"
 #include "data/video_folder.h"
 #include "data/video_kind.h"
+#include "tool/leftovers.h"
 
-#define COUNT   "count"     /* file with the number of frames, in a complete folder */
 #define NO_EXEC 127         /* exit status of a child that could not start ffmpeg */
 #define TAIL    2000        /* size of the kept end of ffmpeg's messages, in bytes */
 enum { TELL_EVERY = 1000 }; /* interval of progress reports, in milliseconds */
@@ -94,24 +94,23 @@ static size_t count_frames(const char *folder)
 {
     char name[32];
     struct stat s;
-    size_t n = 0;
-    int found = 1;
+    int n = 0, found = 1;
 
     while (found) {
-        snprintf(name, sizeof name, "%06zu.png", n + 1);
+        snprintf(name, sizeof name, TED4_VIDEO_FRAME, n + 1);
         char *path = ted4_path_join(folder, name);
         found = path != NULL && stat(path, &s) == 0 && S_ISREG(s.st_mode) && s.st_size > 0;
         n += found != 0;
         free(path);
     }
-    return n;
+    return (size_t)n;
 }
 
 /* Does the folder hold every frame that was unpacked? Programs that clean up old files may have
  * removed some. */
 static int is_complete(const char *folder)
 {
-    char *path = ted4_path_join(folder, COUNT);
+    char *path = ted4_path_join(folder, TED4_VIDEO_COUNT);
     FILE *f = path == NULL ? NULL : fopen(path, "r");
     unsigned long n = 0;
     const int told = f != NULL && fscanf(f, "%lu", &n) == 1;
@@ -124,7 +123,7 @@ static int is_complete(const char *folder)
 
 static int write_count(const char *folder, size_t n)
 {
-    char *path = ted4_path_join(folder, COUNT);
+    char *path = ted4_path_join(folder, TED4_VIDEO_COUNT);
     FILE *f = path == NULL ? NULL : fopen(path, "w");
     int fine = f != NULL && fprintf(f, "%zu\n", n) > 0;
 
@@ -162,7 +161,8 @@ static void become_ffmpeg(const unpacking *a, const char *input, const char *lim
         execlp("ffmpeg", "ffmpeg", "-nostdin", "-hide_banner", "-v", "repeat+error",
                "-protocol_whitelist", "file", "-f", a->demuxer, "-i", input, "-map", "0:v:0", "-vf",
                FILTERS, "-r", RATE, "-frames:v", limit, "-flags", "+bitexact", "-fflags",
-               "+bitexact", "-compression_level", "1", "-f", "image2", "%06d.png", (char *)NULL);
+               "+bitexact", "-compression_level", "1", "-f", "image2", TED4_VIDEO_FRAME,
+               (char *)NULL);
     _exit(NO_EXEC);
 }
 
@@ -202,6 +202,7 @@ static void read_messages(int from, const unpacking *a, char tail[TAIL])
 static int run_ffmpeg(const unpacking *a, size_t most, char tail[TAIL])
 {
     char input[4200], limit[24];
+    siginfo_t info;
     int status, ends[2];
 
     tail[0] = 0;
@@ -214,13 +215,21 @@ static int run_ffmpeg(const unpacking *a, size_t most, char tail[TAIL])
         become_ffmpeg(a, input, limit, ends[1]);
     }
     close(ends[1]);
-    if (child > 0)
+    if (child > 0) {
+        ted4_leftovers_written(a->folder, child);
         read_messages(ends[0], a, tail);
+    }
     close(ends[0]);
-    while (child > 0 && waitpid(child, &status, 0) < 0)
+    if (child < 0)
+        return -1;
+    /* Until its end is taken note of, its number cannot be another's. */
+    while (waitid(P_PID, (id_t)child, &info, WEXITED | WNOWAIT) < 0 && errno == EINTR)
+        ;
+    ted4_leftovers_written(a->folder, 0);
+    while (waitpid(child, &status, 0) < 0)
         if (errno != EINTR)
             return -1;
-    return child > 0 && WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
 /* Gives the last line of the messages, preceded by ": ", or an empty string if there are none.

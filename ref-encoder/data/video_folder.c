@@ -13,6 +13,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "tool/leftovers.h"
+
 #define UNIQUE ".XXXXXX" /* end of the name, as mkdtemp fills it */
 enum { IDLE = 60 };      /* seconds in which an abandoned folder has not changed */
 
@@ -28,6 +30,29 @@ void ted4_video_folder_remove(const char *path)
     }
     if (d != NULL)
         closedir(d);
+    rmdir(path);
+}
+
+/* Writes the name of frame n, with six digits, as printf would do, which a signal handler may not
+ * call. */
+static void name_frame(char name[sizeof "000001.png"], unsigned n)
+{
+    memcpy(name, "000000.png", sizeof "000001.png");
+    for (int i = 5; i >= 0; i--, n /= 10)
+        name[i] = (char)('0' + n % 10);
+}
+
+/* Removes a folder that ffmpeg was filling. For signal handlers. */
+static void empty(const char *path)
+{
+    const int folder = open(path, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+    char name[sizeof "000001.png"];
+    unsigned n = 1;
+
+    do
+        name_frame(name, n);
+    while (n++ < 999999 && unlinkat(folder, name, 0) == 0);
+    unlinkat(folder, TED4_VIDEO_COUNT, 0);
     rmdir(path);
 }
 
@@ -57,6 +82,7 @@ int ted4_video_folder_make(ted4_video_folder *v, const char *final, ted4_message
         free(v->path);
         return -1;
     }
+    ted4_leftovers_add_folder(v->path, empty);
     v->lock = lock_folder(v->path); /* without one, another program may remove it when it is idle */
     return 0;
 }
@@ -64,6 +90,7 @@ int ted4_video_folder_make(ted4_video_folder *v, const char *final, ted4_message
 void ted4_video_folder_leave(ted4_video_folder *v)
 {
     ted4_video_folder_remove(v->path);
+    ted4_leftovers_forget(v->path);
     if (v->lock >= 0)
         close(v->lock);
     free(v->path);

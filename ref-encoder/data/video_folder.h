@@ -1,11 +1,15 @@
 /* video_folder.h - folders of the video cache that are being filled. They have a name of their own,
  * and whoever fills one holds a lock on it, so that those whose program was killed can be told from
- * others and removed.
+ * others and removed. A signal that ends the program removes its folder (tool/leftovers.h).
  * SPDX-License-Identifier: BSD-2-Clause */
 #ifndef TED4_VIDEO_FOLDER_H
 #define TED4_VIDEO_FOLDER_H
 
 #include "data/data_util.h"
+
+/* The frames of a video, from 1 on, and the file that tells how many a complete folder holds. */
+#define TED4_VIDEO_FRAME "%06d.png"
+#define TED4_VIDEO_COUNT "count"
 
 /* A folder that is being filled. */
 typedef struct {

@@ -1,6 +1,7 @@
 /* test_video.c - videos that are unpacked, by programs that stand in for ffmpeg: what is missing,
  * damaged, unfinished or left over.
  * SPDX-License-Identifier: BSD-2-Clause */
+#include <dirent.h>
 #include <fcntl.h>
 #include <signal.h>
 #include <sys/file.h>
@@ -13,6 +14,7 @@
 #include "data/video.h"
 #include "data/video_folder.h"
 #include "tiny_scene.h"
+#include "tool/leftovers.h"
 
 /* Puts a program in place of ffmpeg, which works in the folder of the frames. */
 static void fake_ffmpeg(const tiny_folder *f, const char *commands)
@@ -141,6 +143,19 @@ static void test_sweep(void **state)
 }
 
 #ifdef __linux__
+/* Returns how many files and folders lie in a folder. */
+static int entries(const char *folder)
+{
+    DIR *const d = opendir(folder);
+    int n = -2; /* . and .. */
+
+    must(d != NULL, folder);
+    while (readdir(d) != NULL)
+        n++;
+    closedir(d);
+    return n;
+}
+
 /* Waits at most ten seconds until the process is gone, or is a zombie that nobody waits for. */
 static int is_gone(long process)
 {
@@ -161,24 +176,28 @@ static int is_gone(long process)
     return 0;
 }
 
-/* A program that is killed takes ffmpeg with it. */
-static void test_killed(void **state)
+/* Starts a program that unpacks a video, ends it by a signal while ffmpeg works, and checks that it
+ * takes ffmpeg with it. Where a signal can be caught, none of the frames stays either. */
+static void end_unpacking(int signal)
 {
     tiny_folder f = tiny_new();
     char path[1400], folder[1200];
     char *const programs = strdup(getenv("PATH"));
     long ffmpeg = 0;
+    int status;
 
-    (void)state;
     snprintf(path, sizeof path, "%s:%s", tiny_path(&f, "bin"), programs);
     setenv("PATH", path, 1);
     setenv("XDG_CACHE_HOME", tiny_path(&f, "cache"), 1);
     tiny_text(&f, "a.gif", "GIF89a");
-    snprintf(path, sizeof path, "echo $$ >'%s.new'; mv '%s.new' '%s'; exec sleep 600",
+    snprintf(path, sizeof path,
+             "for i in 01 02 03; do echo x >0000$i.png; done; : >count\n"
+             "echo $$ >'%s.new'; mv '%s.new' '%s'; exec sleep 600",
              tiny_path(&f, "process"), tiny_path(&f, "process"), tiny_path(&f, "process"));
     fake_ffmpeg(&f, path);
     const pid_t child = fork();
     if (child == 0) {
+        ted4_leftovers_watch();
         unpacked(&f, folder);
         _exit(0);
     }
@@ -187,12 +206,22 @@ static void test_killed(void **state)
     FILE *in = fopen(tiny_path(&f, "process"), "r");
     must(in != NULL && fscanf(in, "%ld", &ffmpeg) == 1, "ffmpeg's number");
     fclose(in);
-    must(kill(child, SIGKILL) == 0 && waitpid(child, NULL, 0) == child, "kill");
+    must(kill(child, signal) == 0 && waitpid(child, &status, 0) == child, "kill");
+    assert_true(WIFSIGNALED(status) && WTERMSIG(status) == signal);
     assert_true(is_gone(ffmpeg));
+    assert_int_equal(entries(tiny_path(&f, "cache/ted4")), signal == SIGKILL);
     setenv("PATH", programs, 1);
     unsetenv("XDG_CACHE_HOME");
     free(programs);
     tiny_free(&f);
+}
+
+static void test_ended(void **state)
+{
+    (void)state;
+    end_unpacking(SIGKILL);
+    end_unpacking(SIGTERM);
+    end_unpacking(SIGINT);
 }
 #endif
 
@@ -202,7 +231,7 @@ int main(void)
         cmocka_unit_test(test_unpacked_twice),
         cmocka_unit_test(test_sweep),
 #ifdef __linux__
-        cmocka_unit_test(test_killed),
+        cmocka_unit_test(test_ended),
 #endif
     };
 

@@ -14,7 +14,9 @@ rooms_8="$rooms_7 train/search"
 training="$rooms_8 train/train.h"
 # The files, anywhere, that may start a thread.
 starts=tool/thread_start.h
-commons="$starts $training"
+# What a signal removes, of programs and of the videos that they unpack.
+leftovers=tool/leftovers.h
+commons="$starts $leftovers $training"
 allow="
 ref-decoder                 base
 ref-decoder/base            base ted4.h
@@ -26,7 +28,7 @@ ref-decoder/render          base render ted4.h
 ref-decoder/tool            base render tool $starts ted4.h
 ref-encoder/math            math
 ref-encoder/kernel          base render kernel
-ref-encoder/data            base math data $starts
+ref-encoder/data            base math data $starts $leftovers
 ref-encoder/eval            base eval
 ref-encoder/write           base norm math write kernel ted4.h
 ref-encoder/train/math      base norm recon render math kernel
@@ -58,7 +60,7 @@ for f in $(find ref-decoder ref-encoder -name '*.[ch]'); do
     for i in $(sed -n 's/^[[:space:]]*#[[:space:]]*include[[:space:]]*"\(.*\)".*/\1/p' "$f"); do
         case $i in
         train/*/*) to=${i%/*} ;;
-        train/* | $starts) to=$i ;;
+        train/* | $starts | $leftovers) to=$i ;;
         */*) to=${i%%/*} ;;
         *) [ -f "$folder/$i" ] && continue; to=$i ;;
         esac
