@@ -3,6 +3,7 @@
  * optimised rate is the rate of the file; and damaged checkpoints are refused with a message.
  * SPDX-License-Identifier: BSD-2-Clause */
 #include <errno.h>
+#include <xxhash.h>
 
 #include "test.h"
 #include "ball_decoded.h"
@@ -159,14 +160,17 @@ static void test_checkpoints(void **state)
     free(plain.bytes);
 }
 
-/* Asserts that a fresh trainer refuses the checkpoint, with a message that names the file. */
-static void check_refused(const ted4_train_options *o, ted4_dataset *d, const char *path)
+/* Asserts that a fresh trainer refuses the checkpoint, with a message that has its name and why. */
+static void check_refused(const ted4_train_options *o, ted4_dataset *d, const char *path,
+                          const char *why)
 {
     ted4_trainer t;
 
     ball_begin(&t, o, d, NULL);
     assert_int_equal(ted4_checkpoint_load(&t, path), -1);
     assert_non_null(strstr(t.message.text, path));
+    if (strstr(t.message.text, why) == NULL)
+        fail_msg("%s, expected: %s", t.message.text, why);
     ted4_trainer_finish(&t);
 }
 
@@ -186,23 +190,39 @@ static ball_file read_file(const char *path)
  * and appends a byte. */
 static void check_damaged(const char *from)
 {
+    static const char why[] = "it is cut short or damaged";
     const ted4_train_options o = ball_options();
     ball_file f = read_file(from);
 
     for (size_t i = 0; i < f.size; i += i < 200 ? 1 : 1 + f.size / 40) {
         f.bytes[i] ^= (uint8_t)(i % 2 ? 0xff : 0x11);
         tiny_bytes(&moving_folder, "damaged", f.bytes, f.size);
-        check_refused(&o, &moving_scene, tiny_path(&moving_folder, "damaged"));
+        check_refused(&o, &moving_scene, tiny_path(&moving_folder, "damaged"), why);
         f.bytes[i] ^= (uint8_t)(i % 2 ? 0xff : 0x11);
     }
     for (size_t i = 0; i < f.size; i += i < 60 ? 5 : f.size / 9) {
         tiny_bytes(&moving_folder, "damaged", f.bytes, i);
-        check_refused(&o, &moving_scene, tiny_path(&moving_folder, "damaged"));
+        check_refused(&o, &moving_scene, tiny_path(&moving_folder, "damaged"), why);
     }
     tiny_bytes(&moving_folder, "damaged", f.bytes, f.size - 1);
-    check_refused(&o, &moving_scene, tiny_path(&moving_folder, "damaged"));
+    check_refused(&o, &moving_scene, tiny_path(&moving_folder, "damaged"), why);
     tiny_bytes(&moving_folder, "damaged", f.bytes, f.size + 1);
-    check_refused(&o, &moving_scene, tiny_path(&moving_folder, "damaged"));
+    check_refused(&o, &moving_scene, tiny_path(&moving_folder, "damaged"), why);
+    free(f.bytes);
+}
+
+/* Changes the number of the format, which follows that of the kind, and the hash at the end. */
+static void check_other_version(const char *from)
+{
+    const ted4_train_options o = ball_options();
+    ball_file f = read_file(from);
+    XXH64_hash_t hash;
+
+    f.bytes[8]--;
+    hash = XXH3_64bits(f.bytes, f.size - sizeof hash);
+    memcpy(f.bytes + f.size - sizeof hash, &hash, sizeof hash);
+    tiny_bytes(&moving_folder, "damaged", f.bytes, f.size);
+    check_refused(&o, &moving_scene, tiny_path(&moving_folder, "damaged"), "another version");
     free(f.bytes);
 }
 
@@ -221,18 +241,19 @@ static void test_bad_checkpoints(void **state)
     assert_int_equal(ted4_checkpoint_save(&t, stop_path(1)), 0);
     ted4_trainer_finish(&t);
 
-    check_refused(&o, &moving_scene, tiny_path(&moving_folder, "missing"));
-    check_refused(&o, &single_scene, stop_path(0));
+    check_refused(&o, &moving_scene, tiny_path(&moving_folder, "missing"), "No such file");
+    check_refused(&o, &single_scene, stop_path(0), " pictures, and there are ");
+    check_other_version(stop_path(0));
     check_damaged(stop_path(0));
     check_damaged(stop_path(1));
     ball_set(&o, "lambda=0.003");
-    check_refused(&o, &moving_scene, stop_path(1));
+    check_refused(&o, &moving_scene, stop_path(1), "its lambda is ");
     o = ball_options();
     ball_set(&o, "offsets=3");
-    check_refused(&o, &moving_scene, stop_path(0));
+    check_refused(&o, &moving_scene, stop_path(0), "its offsets is ");
     o = ball_options();
     o.seed = 1;
-    check_refused(&o, &moving_scene, stop_path(1));
+    check_refused(&o, &moving_scene, stop_path(1), "its seed is ");
 }
 
 /* A state that no checkpoint may contain is an error, although no system call failed. */

@@ -292,7 +292,7 @@ static void test_output(void **state)
     refuse("good --checkpoint nowhere/c" OUT QUICK, "nowhere/c: cannot be written");
     refuse("good --log nowhere/l" OUT QUICK, "nowhere/l");
     tiny_text(&folder, "damaged", "not a checkpoint");
-    refuse("good --checkpoint damaged --resume" OUT QUICK, "not a checkpoint");
+    refuse("good --checkpoint damaged --resume" OUT QUICK, "it is cut short or damaged");
     tiny_text(&folder, "out/there.ted4", "mine");
     refuse("good -o out/there.ted4" QUICK, "exists");
     assert_int_equal(tiny_size(&folder, "out/there.ted4"), 4);

@@ -29,6 +29,16 @@ static void expect(stream *s, uint64_t value)
     ted4_state_expect(s, value);
 }
 
+/* Does the same as expect(), and fills t->message with why if the numbers differ. */
+static void expect_or(stream *s, ted4_trainer *t, uint64_t value, const char *why)
+{
+    const int before = s->failed;
+
+    expect(s, value);
+    if (s->failed && !before)
+        ted4_trainer_fail(t, "%s", why);
+}
+
 /* Does the same as expect(), and fills t->message with both numbers if they differ. */
 static void expect_number(stream *s, ted4_trainer *t, uint64_t value, const char *what)
 {
@@ -340,23 +350,15 @@ static void walk_poses(stream *s, ted4_trainer *t)
                  !(p->decision >= TED4_POSES_ON_TRIAL && p->decision <= TED4_POSES_GIVEN);
 }
 
-static void expect_digest(stream *s, ted4_trainer *t)
-{
-    const int before = s->failed;
-
-    expect(s, ted4_dataset_digest(t->data));
-    if (s->failed && !before)
-        ted4_trainer_fail(t, "it is of other pictures, cameras, points or background (--downscale, "
-                             "--black, another scene)");
-}
-
 static void walk(stream *s, ted4_trainer *t)
 {
     expect(s, MAGIC);
-    expect(s, FORMAT);
+    expect_or(s, t, FORMAT, "it is of another version of ted4enc");
     expect_number(s, t, t->data->n_pictures, "pictures");
     expect_number(s, t, t->data->n_frames, "times");
-    expect_digest(s, t);
+    expect_or(s, t, ted4_dataset_digest(t->data),
+              "it is of other pictures, cameras, points or background (another scene, --downscale, "
+              "--black)");
     put(s, &t->phase.stage2, sizeof t->phase.stage2);
     walk_options(s, t);
     expect(s, ted4_options_hash(&t->opt, t->phase.stage2 ? 2 : 1));
@@ -403,6 +405,8 @@ static int run(ted4_trainer *t, FILE *file, ted4_snapshot *memory, size_t capaci
         return -1;
     XXH3_64bits_reset(s.hash);
     s.failed = !writing && !ted4_state_intact(&s);
+    if (s.failed)
+        ted4_trainer_fail(t, "it is cut short or damaged, or of another kind");
     XXH3_64bits_reset(s.hash);
     walk(&s, t);
     ted4_state_hash(&s);
