@@ -247,6 +247,7 @@ static const range nothing = { INFINITY, -INFINITY };
 
 static void widen(range *r, double v)
 {
+    v = v == 0 ? 0 : v; /* it would be printed as -0 */
     r->low = fmin(r->low, v);
     r->high = fmax(r->high, v);
 }

@@ -477,34 +477,43 @@ static void test_random_points(void **state)
     tiny_free(&f);
 }
 
+enum { TEXT = 2048 };
+
+static void print_into(const ted4_dataset *d, char text[TEXT])
+{
+    FILE *const out = tmpfile();
+
+    assert_non_null(out);
+    ted4_dataset_print(d, out);
+    rewind(out);
+    text[fread(text, 1, TEXT - 1, out)] = 0;
+    fclose(out);
+}
+
 static void test_print(void **state)
 {
     (void)state;
     ted4_dataset d;
     tiny_folder f = tiny_new();
-    char text[2048] = "";
+    char text[TEXT];
 
     write_nerfstudio(&f);
     load(&d, &f, &tiny_options);
-    FILE *out = tmpfile();
-    assert_non_null(out);
-    ted4_dataset_print(&d, out);
-    rewind(out);
-    assert_true(fread(text, 1, sizeof text - 1, out) > 0);
-    fclose(out);
+    print_into(&d, text);
     assert_non_null(strstr(
         text, "layout      nerfstudio\npictures    9 train, 1 test\ncameras     2\nframes      5\n"
               "size        16 x 12 pixels\nfocal       30..31 x 30..32 pixels\n"));
     assert_non_null(strstr(text, "rate        25 frames/s\n"));
+    /* Zero has no sign. */
+    d.n_points = 1;
+    for (int k = 0; k < 3; k++)
+        d.points[k] = -0.0;
+    print_into(&d, text);
+    assert_non_null(strstr(text, "points      1\nbounds      [0, 0] x [0, 0] x [0, 0]\n"));
     /* A single frame has no frame rate, whatever its file says; no points have no bounds. */
     d.n_frames = 1;
     d.n_points = 0;
-    out = tmpfile();
-    assert_non_null(out);
-    ted4_dataset_print(&d, out);
-    rewind(out);
-    text[fread(text, 1, sizeof text - 1, out)] = 0;
-    fclose(out);
+    print_into(&d, text);
     assert_null(strstr(text, "rate"));
     assert_non_null(strstr(text, "points      0\nbounds      none\n"));
     ted4_dataset_free(&d);

@@ -61,7 +61,8 @@ static ted4_argument options[N_OPTIONS] = {
                     "neu3d and calibration: lossless videos by ffmpeg, not frames" },
     [OPT_SEED] = { 0, "seed", "S", "of textures, points, errors and tints, 32 bits. Default 1" },
     [OPT_THREADS] = { 'j', "threads", "N", "threads, 1 to 1024. Default: all cores" },
-    [OPT_FORCE] = { 'f', "force", NULL, "write into a folder that is not empty" },
+    [OPT_FORCE] = { 'f', "force", NULL,
+                    "write into a folder that is not empty; its other files stay" },
     [OPT_HELP] = TED4_ARGUMENT_HELP,
     [OPT_VERSION] = TED4_ARGUMENT_VERSION,
 };
