@@ -108,7 +108,8 @@ $(foreach l,$(LEVELS),$(eval $(call COMPILE_LEVEL,$l)))
 
 $B/libted4dec.a: $(call OBJECTS,$(DEC_SRC))
 $B/libted4render.a: $(call OBJECTS,$(DRAW_SRC))
-$B/libted4enc.a: $(call OBJECTS,$(ENC_SRC))
+# Loading a scene unpacks videos, whose frames a signal removes.
+$B/libted4enc.a: $(call OBJECTS,$(ENC_SRC)) $B/ref-decoder/tool/leftovers.o
 $B/lib%.a:
 	@rm -f $@
 	$(AR) rcsD $@ $^
