@@ -176,6 +176,15 @@ static int is_gone(long process)
     return 0;
 }
 
+static void default_signal(int number)
+{
+    struct sigaction usual;
+
+    memset(&usual, 0, sizeof usual);
+    usual.sa_handler = SIG_DFL;
+    sigaction(number, &usual, NULL);
+}
+
 /* Starts a program that unpacks a video, ends it by a signal while ffmpeg works, and checks that it
  * takes ffmpeg with it. Where a signal can be caught, none of the frames stays either. */
 static void end_unpacking(int signal)
@@ -197,6 +206,7 @@ static void end_unpacking(int signal)
     fake_ffmpeg(&f, path);
     const pid_t child = fork();
     if (child == 0) {
+        default_signal(signal); /* in the background, SIGINT is ignored */
         ted4_leftovers_watch();
         unpacked(&f, folder);
         _exit(0);
