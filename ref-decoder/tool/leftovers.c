@@ -3,6 +3,7 @@
  * SPDX-License-Identifier: BSD-2-Clause */
 #include "leftovers.h"
 
+#include <errno.h>
 #include <signal.h>
 #include <stdatomic.h>
 #include <stddef.h>
@@ -47,6 +48,20 @@ void ted4_leftovers_written(const char *path, pid_t writer)
     for (int i = 0; i < TED4_LEFTOVERS; i++)
         if (atomic_load(&slots[i].path) == path)
             atomic_store(&slots[i].writer, (int)writer);
+}
+
+/* A signal ends the child until it has ended by itself; after that, its number may be another's. */
+int ted4_leftovers_wait(const char *path, pid_t writer)
+{
+    siginfo_t info;
+    int status = -1;
+
+    while (waitid(P_PID, (id_t)writer, &info, WEXITED | WNOWAIT) < 0 && errno == EINTR)
+        ;
+    ted4_leftovers_written(path, 0);
+    while (waitpid(writer, &status, 0) < 0 && errno == EINTR)
+        ;
+    return status;
 }
 
 void ted4_leftovers_forget(const char *path)

@@ -21,9 +21,12 @@ void ted4_leftovers_add(const char *path, pid_t writer);
 /* The same for a folder. empty: removes it with the files that may be in it; a signal handler calls
  * it, so that it may use only functions that are safe there. */
 void ted4_leftovers_add_folder(const char *path, void (*empty)(const char *path));
-/* Changes the writer of a file or folder: to a child process that has begun, or to 0 before the
- * number of one that has ended can be another's. path: the pointer that was added. */
+/* A child process writes the file or folder, and is ended with this one, until ted4_leftovers_wait.
+ * path: the pointer that was added. */
 void ted4_leftovers_written(const char *path, pid_t writer);
+/* Waits for the end of the child process that writes the file or folder. Returns its status, as
+ * waitpid gives it, or -1. path: the pointer that was added. */
+int ted4_leftovers_wait(const char *path, pid_t writer);
 /* The file or folder has its name, or is gone. path: the pointer that was added. */
 void ted4_leftovers_forget(const char *path);
 /* Ends the writers and removes the files and folders. For signal handlers. */

@@ -115,21 +115,6 @@ static void first_words(FILE *messages, char *text, size_t size)
     text[n] = '\0';
 }
 
-/* Waits for ffmpeg. A signal ends it, with this process, until it has ended by itself; after that,
- * its number may be another's. */
-static int wait_for(const ted4_video_out *v)
-{
-    siginfo_t info;
-    int status = -1;
-
-    while (waitid(P_PID, (id_t)v->child, &info, WEXITED | WNOWAIT) < 0 && errno == EINTR)
-        ;
-    ted4_leftovers_written(v->file.temporary, 0);
-    while (waitpid(v->child, &status, 0) < 0 && errno == EINTR)
-        ;
-    return status;
-}
-
 /* Returns what is wrong with the video of an ffmpeg that has ended, or NULL. Status 0 is no proof:
  * some versions give it where the end of the file could not be written. Nor is a message proof of a
  * failure: libraries, and what loads them, print harmless ones. words: the first message. */
@@ -151,7 +136,7 @@ int ted4_video_out_close(ted4_video_out *v, int keep, char *why, size_t why_size
     int status;
 
     close(v->pipe);
-    status = wait_for(v);
+    status = ted4_leftovers_wait(v->file.temporary, v->child);
     first_words(v->messages, words, sizeof words);
     fclose(v->messages);
     wrong = fault(v, status, keep, words);

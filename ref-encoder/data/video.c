@@ -202,8 +202,7 @@ static void read_messages(int from, const unpacking *a, char tail[TAIL])
 static int run_ffmpeg(const unpacking *a, size_t most, char tail[TAIL])
 {
     char input[4200], limit[24];
-    siginfo_t info;
-    int status, ends[2];
+    int ends[2];
 
     tail[0] = 0;
     snprintf(limit, sizeof limit, "%zu", most);
@@ -222,13 +221,9 @@ static int run_ffmpeg(const unpacking *a, size_t most, char tail[TAIL])
     close(ends[0]);
     if (child < 0)
         return -1;
-    /* Until its end is taken note of, its number cannot be another's. */
-    while (waitid(P_PID, (id_t)child, &info, WEXITED | WNOWAIT) < 0 && errno == EINTR)
-        ;
-    ted4_leftovers_written(a->folder, 0);
-    while (waitpid(child, &status, 0) < 0)
-        if (errno != EINTR)
-            return -1;
+
+    const int status = ted4_leftovers_wait(a->folder, child);
+
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 

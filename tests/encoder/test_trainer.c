@@ -160,7 +160,7 @@ static void test_checkpoints(void **state)
     free(plain.bytes);
 }
 
-/* Asserts that a fresh trainer refuses the checkpoint, with a message that has its name and why. */
+/* Asserts that a fresh trainer refuses the checkpoint; the message names the file and says why. */
 static void check_refused(const ted4_train_options *o, ted4_dataset *d, const char *path,
                           const char *why)
 {

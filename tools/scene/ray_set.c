@@ -252,7 +252,6 @@ static int run_ffmpeg(const char *input, const char *to)
 {
     char output[MAX_PATH + 8];
     const pid_t child = fork();
-    int status = -1;
 
     if (child == 0) {
         snprintf(output, sizeof output, "file:%s", to);
@@ -263,8 +262,9 @@ static int run_ffmpeg(const char *input, const char *to)
     if (child < 0)
         return -1;
     ted4_leftovers_add(to, child);
-    while (waitpid(child, &status, 0) < 0 && errno == EINTR)
-        ;
+
+    const int status = ted4_leftovers_wait(to, child);
+
     return WIFEXITED(status) && WEXITSTATUS(status) == 0 && ted4_mp4_is_whole(to) ? 0 : -1;
 }
 
